@@ -1,0 +1,10 @@
+# Every library that Taut builds with; docs/dependencies.md says why each is here.
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(TBB REQUIRED)
+find_package(fmt REQUIRED)
+find_package(PkgConfig REQUIRED)
+find_package(tomlplusplus REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(embree 3 REQUIRED)
+pkg_check_modules(cairo REQUIRED IMPORTED_TARGET cairo)
+find_package(CLI11 REQUIRED)

@@ -1,0 +1,65 @@
+#include "taut/base/file.h"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+#include <system_error>
+
+#include "taut/base/error.h"
+
+namespace taut {
+
+namespace fs = std::filesystem;
+
+namespace {
+std::string system_reason() { return errno ? std::strerror(errno) : "unknown reason"; }
+}  // namespace
+
+void write_file(const fs::path& path, const std::function<void(std::ostream&)>& write) {
+  std::error_code failure;
+  if (path.has_parent_path()) fs::create_directories(path.parent_path(), failure);
+  // The process id keeps two programs that write into one folder from sharing a temporary file.
+  const fs::path temporary = path.string() + ".tmp" + std::to_string(::getpid());
+  errno = 0;
+  bool complete = false;
+  std::string reason;
+  try {
+    std::ofstream stream(temporary, std::ios::binary | std::ios::trunc);
+    if (stream) {
+      write(stream);
+      stream.flush();
+    }
+    complete = static_cast<bool>(stream);
+    if (!complete) reason = system_reason();
+  } catch (...) {
+    fs::remove(temporary, failure);
+    throw;
+  }
+  if (complete) {
+    fs::rename(temporary, path, failure);
+    if (!failure) return;
+    reason = failure.message();
+  }
+  fs::remove(temporary, failure);
+  throw InputError({path.string()}, "cannot be written: " + reason + "; check the folder's permissions and free space");
+}
+
+void write_file(const fs::path& path, std::string_view content) {
+  write_file(path, [&](std::ostream& out) { out.write(content.data(), static_cast<std::streamsize>(content.size())); });
+}
+
+std::string read_file(const fs::path& path) {
+  std::error_code failure;
+  if (fs::is_directory(path, failure)) throw InputError({path.string()}, "cannot be read: it is a folder, a file was expected");
+  errno = 0;
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) throw InputError({path.string()}, "cannot be read: " + system_reason());
+  std::ostringstream content;
+  content << stream.rdbuf();
+  return std::move(content).str();
+}
+
+}  // namespace taut

@@ -1,0 +1,55 @@
+#pragma once
+// Parallel loops and sums that give the same bits for any number of threads.
+//
+//   parallel_for(n, grain, f)   f(begin, end) over disjoint ranges covering [0, n); the iterations must be independent
+//   ordered_sum(n, f)           sum of f(begin, end) over fixed chunks of `sum_chunk` items, added up in order: the chunks, and
+//                               so the rounding, do not depend on the number of threads
+//
+// A loop of at most `grain` items runs on the calling thread. Callable from any thread; nested calls are allowed.
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <vector>
+
+#include "taut/base/types.h"
+
+namespace taut {
+
+// Number of threads that loops may use, at least 1. The default is the number of processors.
+// Not to be called while a loop runs.
+void set_thread_count(int count);
+int thread_count();
+
+namespace detail {
+void run_parallel(Index n, Index grain, const std::function<void(Index, Index)>& body);
+}
+
+template <class Body>
+void parallel_for(Index n, Index grain, Body&& body) {
+  if (n <= 0) return;
+  if (n <= grain || thread_count() == 1) {
+    body(Index{0}, n);
+    return;
+  }
+  detail::run_parallel(n, grain, std::ref(body));
+}
+
+constexpr Index sum_chunk = 2048;
+
+// T is a double or anything with += and a zero default (several sums at once: std::array wrappers in vector_ops).
+template <class T = double, class Body>
+T ordered_sum(Index n, Body&& body) {
+  const Index chunks = (n + sum_chunk - 1) / sum_chunk;
+  if (chunks <= 1) return n > 0 ? T(body(Index{0}, n)) : T{};
+  std::vector<T> partial(static_cast<std::size_t>(chunks));
+  parallel_for(chunks, 4, [&](Index begin, Index end) {
+    for (Index c = begin; c < end; ++c)
+      partial[static_cast<std::size_t>(c)] = body(c * sum_chunk, std::min(n, (c + 1) * sum_chunk));
+  });
+  T total{};
+  for (const T& p : partial) total += p;
+  return total;
+}
+
+}  // namespace taut

@@ -1,0 +1,31 @@
+#include "taut/mesh/grid.h"
+
+#include <cassert>
+
+namespace taut {
+
+TriangleMesh make_grid(const GridShape& shape) {
+  assert(shape.nu >= 2 && shape.nv >= 2);
+  TriangleMesh mesh;
+  mesh.positions.reserve(static_cast<std::size_t>(shape.node_count()));
+  for (Index j = 0; j < shape.nv; ++j)
+    for (Index i = 0; i < shape.nu; ++i) {
+      const double s = double(i) / (shape.nu - 1), t = double(j) / (shape.nv - 1);
+      mesh.positions.push_back(shape.origin + s * shape.u + t * shape.v);
+      mesh.texcoords.emplace_back(s, t);
+    }
+  for (Index j = 0; j + 1 < shape.nv; ++j)
+    for (Index i = 0; i + 1 < shape.nu; ++i) {
+      const Index a = shape.node(i, j), b = shape.node(i + 1, j), c = shape.node(i + 1, j + 1), d = shape.node(i, j + 1);
+      if ((i + j) % 2 == 0) {
+        mesh.triangles.push_back({a, b, c});
+        mesh.triangles.push_back({a, c, d});
+      } else {
+        mesh.triangles.push_back({a, b, d});
+        mesh.triangles.push_back({b, c, d});
+      }
+    }
+  return mesh;
+}
+
+}  // namespace taut
