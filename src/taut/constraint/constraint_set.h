@@ -1,0 +1,71 @@
+#pragma once
+// Per-node velocity constraints: which directions of a node are prescribed, and what velocity it has along them. MATH.md's section 3,
+// paper Eq. 3, 4, 12. Nothing downstream of this type asks where a constraint came from.
+//
+//   ndof(i)      3, 2, 1 or 0 free directions of node i
+//   U_i          3 x ndof, orthonormal columns spanning the free directions           S_i = U_i U_iᵀ
+//   velocity(i)  (I - S_i) v*, m/s: the prescribed velocity at the end of the step, in the constrained directions only
+//   z_i          the prescribed part of the integrator's unknown, made from velocity(i) by the integrator (step/)
+//
+// Building it: `constrain(i, n, speed)` says n·v = speed for a direction n (any length > 0); several directions of one node need not be
+// orthogonal: z solves n_k·v* = speed_k for all k. A direction that adds less than `parallel_tolerance` to the span of the earlier ones
+// is merged with them (its speed is then ignored: two nearly parallel normals cannot both be met exactly).
+// `fix(i, v)` prescribes all three.
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "taut/base/types.h"
+
+namespace taut {
+
+// sin of the angle below which two normals count as one: beyond it the solution for z would amplify speed errors a thousandfold.
+constexpr double parallel_tolerance = 1e-3;
+
+// How the two free directions of an ndof = 2 node are chosen. All span the same plane: only preconditioners that are not
+// block-wise see a difference.
+enum class FrameChoice {
+  duff,       // Duff et al. 2017, "Building an orthonormal basis, revisited": no bad direction
+  paper_eq13  // the paper's closed form, its "otherwise" case repaired; loses digits near |p1| = 1, exact at both poles
+};
+
+// Two orthonormal vectors orthogonal to the unit vector n.
+std::array<Vec3, 2> orthonormal_complement(const Vec3& n, FrameChoice choice = FrameChoice::duff);
+
+class ConstraintSet {
+ public:
+  ConstraintSet() = default;
+  explicit ConstraintSet(Index nodes, FrameChoice choice = FrameChoice::duff) { reset(nodes, choice); }
+  // All nodes free.
+  void reset(Index nodes, FrameChoice choice = FrameChoice::duff);
+
+  // n·v = speed (m/s). n must be finite and not zero (asserted).
+  void constrain(Index node, const Vec3& n, double speed);
+  // v = velocity.
+  void fix(Index node, const Vec3& velocity);
+
+  Index nodes() const { return static_cast<Index>(ndof_.size()); }
+  int ndof(Index i) const { return ndof_[i]; }
+  std::span<const std::int8_t> ndofs() const { return ndof_; }
+  // Columns of U_i: the first ndof(i) columns of this matrix; the others complete it to a rotation and span the constrained directions.
+  const Mat3& frame(Index i) const { return frame_[i]; }
+  const Vec3& velocity(Index i) const { return velocity_[i]; }
+  // S_i, exactly I or 0 for ndof 3 or 0.
+  Mat3 projection(Index i) const;
+  // S_i a: the free part of a.
+  Vec3 free_part(Index i, const Vec3& a) const;
+  Vec3 constrained_part(Index i, const Vec3& a) const { return a - free_part(i, a); }
+  // 3N minus the number of prescribed directions.
+  Index free_dofs() const;
+  Index constrained_dofs() const { return 3 * nodes() - free_dofs(); }
+  bool same_pattern(const ConstraintSet& other) const { return ndof_ == other.ndof_; }
+
+ private:
+  std::vector<std::int8_t> ndof_;
+  std::vector<Mat3> frame_;
+  std::vector<Vec3> velocity_;
+  FrameChoice choice_ = FrameChoice::duff;
+};
+
+}  // namespace taut
