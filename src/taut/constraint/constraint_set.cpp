@@ -33,19 +33,19 @@ void ConstraintSet::reset(Index nodes, FrameChoice choice) {
   choice_ = choice;
   ndof_.assign(static_cast<std::size_t>(nodes), 3);
   frame_.assign(static_cast<std::size_t>(nodes), Mat3::Identity());
-  velocity_.assign(static_cast<std::size_t>(nodes), Vec3::Zero());
+  displacement_.assign(static_cast<std::size_t>(nodes), Vec3::Zero());
 }
 
-void ConstraintSet::constrain(Index i, const Vec3& n, double speed) {
+void ConstraintSet::constrain(Index i, const Vec3& n, double distance) {
   const double length = n.norm();
-  assert(std::isfinite(length) && length > 0.0 && std::isfinite(speed));
+  assert(std::isfinite(length) && length > 0.0 && std::isfinite(distance));
   const Vec3 direction = n / length;
-  // The part of the direction that is still free becomes a new constrained direction; its speed is what the earlier ones leave over.
+  // The part of the direction that is still free becomes a new constrained direction; its distance is what the earlier ones leave over.
   const Vec3 remaining = free_part(i, direction);
   const double share = remaining.norm();
   if (share < parallel_tolerance) return;
   const Vec3 fresh = remaining / share;
-  velocity_[i] += (speed / length - direction.dot(velocity_[i])) / share * fresh;
+  displacement_[i] += (distance / length - direction.dot(displacement_[i])) / share * fresh;
 
   Mat3& frame = frame_[i];
   switch (ndof_[i]) {
@@ -69,11 +69,11 @@ void ConstraintSet::constrain(Index i, const Vec3& n, double speed) {
   }
 }
 
-void ConstraintSet::fix(Index i, const Vec3& velocity) {
-  assert(velocity.allFinite());
+void ConstraintSet::fix(Index i, const Vec3& displacement) {
+  assert(displacement.allFinite());
   ndof_[i] = 0;
   frame_[i].setIdentity();
-  velocity_[i] = velocity;
+  displacement_[i] = displacement;
 }
 
 Mat3 ConstraintSet::projection(Index i) const {

@@ -1,16 +1,17 @@
 #pragma once
-// Per-node velocity constraints: which directions of a node are prescribed, and what velocity it has along them. MATH.md's section 3,
+// Per-node constraints of one step: which directions of a node are prescribed, and how far it moves along them. MATH.md's section 3,
 // paper Eq. 3, 4, 12. Nothing downstream of this type asks where a constraint came from.
 //
-//   ndof(i)      3, 2, 1 or 0 free directions of node i
-//   U_i          3 x ndof, orthonormal columns spanning the free directions           S_i = U_i U_iᵀ
-//   velocity(i)  (I - S_i) v*, m/s: the prescribed velocity at the end of the step, in the constrained directions only
-//   z_i          the prescribed part of the integrator's unknown, made from velocity(i) by the integrator (step/)
+//   ndof(i)          3, 2, 1 or 0 free directions of node i
+//   U_i              3 x ndof, orthonormal columns spanning the free directions           S_i = U_i U_iᵀ
+//   displacement(i)  (I - S_i) d, m: the prescribed motion over this step, in the constrained directions only
+//   z_i              the prescribed part of the integrator's unknown, made from displacement(i) by the integrator (step/): the paper
+//                    prescribes velocities; a displacement says the same for every integrator and lets no position drift
 //
-// Building it: `constrain(i, n, speed)` says n·v = speed for a direction n (any length > 0); several directions of one node need not be
-// orthogonal: z solves n_k·v* = speed_k for all k. A direction that adds less than `parallel_tolerance` to the span of the earlier ones
-// is merged with them (its speed is then ignored: two nearly parallel normals cannot both be met exactly).
-// `fix(i, v)` prescribes all three.
+// Building it: `constrain(i, n, distance)` says n·(x_end - x_start) = distance for a unit direction n (any length > 0 is accepted, the
+// equation is taken as written); several directions of one node need not be orthogonal: d solves n_k·d = distance_k for all k. A direction
+// that adds less than `parallel_tolerance` to the span of the earlier ones is merged with them (its distance is then ignored: two nearly
+// parallel normals cannot both be met exactly). `fix(i, d)` prescribes all three.
 
 #include <array>
 #include <span>
@@ -20,7 +21,7 @@
 
 namespace taut {
 
-// sin of the angle below which two normals count as one: beyond it the solution for z would amplify speed errors a thousandfold.
+// sin of the angle below which two normals count as one: beyond it the solution for z would amplify errors of distance a thousandfold.
 constexpr double parallel_tolerance = 1e-3;
 
 // How the two free directions of an ndof = 2 node are chosen. All span the same plane: only preconditioners that are not
@@ -40,17 +41,17 @@ class ConstraintSet {
   // All nodes free.
   void reset(Index nodes, FrameChoice choice = FrameChoice::duff);
 
-  // n·v = speed (m/s). n must be finite and not zero (asserted).
-  void constrain(Index node, const Vec3& n, double speed);
-  // v = velocity.
-  void fix(Index node, const Vec3& velocity);
+  // n·d = distance (m). n must be finite and not zero (asserted).
+  void constrain(Index node, const Vec3& n, double distance);
+  // d = displacement (m).
+  void fix(Index node, const Vec3& displacement);
 
   Index nodes() const { return static_cast<Index>(ndof_.size()); }
   int ndof(Index i) const { return ndof_[i]; }
   std::span<const std::int8_t> ndofs() const { return ndof_; }
   // Columns of U_i: the first ndof(i) columns of this matrix; the others complete it to a rotation and span the constrained directions.
   const Mat3& frame(Index i) const { return frame_[i]; }
-  const Vec3& velocity(Index i) const { return velocity_[i]; }
+  const Vec3& displacement(Index i) const { return displacement_[i]; }
   // S_i, exactly I or 0 for ndof 3 or 0.
   Mat3 projection(Index i) const;
   // S_i a: the free part of a.
@@ -64,7 +65,7 @@ class ConstraintSet {
  private:
   std::vector<std::int8_t> ndof_;
   std::vector<Mat3> frame_;
-  std::vector<Vec3> velocity_;
+  std::vector<Vec3> displacement_;
   FrameChoice choice_ = FrameChoice::duff;
 };
 

@@ -1,0 +1,61 @@
+#pragma once
+// Analytic solids that cloth collides with, and their rigid motion.
+//
+//   pose(t)        x_world = rotation(t) * x_local + translation(t)
+//   local shapes   sphere    centre 0, `radius`
+//                  plane     the half space z <= 0: normal +z
+//                  cylinder  axis z, |z| <= height/2, `radius`, flat caps
+//                  box       |x| <= size.x/2, |y| <= size.y/2, |z| <= size.z/2
+// Units: m, s, rad. `thickness` (m) is added outside the surface; `friction` is Coulomb's μ (static and kinetic alike), no unit.
+
+#include <Eigen/Geometry>
+#include <string>
+#include <vector>
+
+#include "taut/base/types.h"
+
+namespace taut {
+
+struct Pose {
+  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
+  Vec3 translation = Vec3::Zero();
+  Vec3 to_world(const Vec3& local) const { return rotation * local + translation; }
+  Vec3 to_local(const Vec3& world) const { return rotation.conjugate() * (world - translation); }
+};
+
+struct KeyFrame {
+  double time = 0.0;
+  Pose pose;
+};
+
+enum class SolidShape { sphere, plane, cylinder, box };
+
+struct Solid {
+  std::string name;
+  SolidShape shape = SolidShape::sphere;
+  double radius = 0.1;
+  double height = 1.0;
+  Vec3 size = Vec3::Ones();
+  double friction = 0.0;
+  double thickness = 0.0;
+
+  // Motion: between key frames positions are linear and rotations spherically linear in time; before the first and after the last the pose
+  // is held. With no key frame the pose is `initial` moved by the constant `velocity` (m/s) and turned by `angular_velocity` (rad/s, world
+  // axes, about the solid's own origin).
+  std::vector<KeyFrame> key_frames;
+  Pose initial;
+  Vec3 velocity = Vec3::Zero();
+  Vec3 angular_velocity = Vec3::Zero();
+
+  Pose pose(double time) const;
+};
+
+// Signed distance (m, negative inside, thickness not counted) from a point in local coordinates, and the outward unit normal there. At
+// points with no unique normal (a sphere's centre, a box's edges from inside) one of the nearest is returned, always finite and of length 1.
+struct SurfacePoint {
+  double distance = 0.0;
+  Vec3 normal = Vec3::UnitZ();
+};
+SurfacePoint closest_surface(const Solid& solid, const Vec3& local);
+
+}  // namespace taut

@@ -1,0 +1,19 @@
+#pragma once
+// Options of a linear solver; validated by scene/ and by the program.
+
+#include <string>
+
+namespace taut {
+
+struct SolverOptions {
+  // METHOD or METHOD:PRECONDITIONER, see solve/solver.h for the list ("core_pcg", "mpcg:diagonal", ...).
+  std::string name = "core_pcg";
+  // Ascher & Boxerman's stop test: δ <= tolerance² δ0, δ = rᵀ M_p⁻¹ r, δ0 = b̂ᵀ M_p⁻¹ b̂.
+  double tolerance = 1e-3;
+  // 0: ten times the number of unknowns, at least 1000.
+  int max_iterations = 0;
+  // core_pcg: reorder `matrix` and vectors once before the loop (paper, Section 6, lines 6 and 7), or the `vectors` in each iteration.
+  std::string reordering = "vectors";
+};
+
+}  // namespace taut
