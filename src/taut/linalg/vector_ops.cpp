@@ -1,0 +1,67 @@
+#include "taut/linalg/vector_ops.h"
+
+#include <cassert>
+#include <cmath>
+
+#include "taut/base/parallel.h"
+#include "taut/base/simd.h"
+
+namespace taut {
+
+namespace {
+
+// Entries per task: below this, handing over costs more than the work.
+constexpr Index entries_per_task = 16384;
+
+TAUT_MULTIVERSION double dot_kernel(const double* a, const double* b, Index n) {
+  double s = 0.0;
+#pragma omp simd reduction(+ : s)
+  for (Index i = 0; i < n; ++i) s += a[i] * b[i];
+  return s;
+}
+
+TAUT_MULTIVERSION void add_scaled_kernel(double alpha, const double* x, double* y, Index n) {
+#pragma omp simd
+  for (Index i = 0; i < n; ++i) y[i] += alpha * x[i];
+}
+
+TAUT_MULTIVERSION void scale_add_kernel(double beta, const double* x, double* y, Index n) {
+#pragma omp simd
+  for (Index i = 0; i < n; ++i) y[i] = x[i] + beta * y[i];
+}
+
+}  // namespace
+
+double dot(std::span<const double> a, std::span<const double> b) {
+  assert(a.size() == b.size());
+  return ordered_sum(static_cast<Index>(a.size()), [&](Index begin, Index end) { return dot_kernel(&a[begin], &b[begin], end - begin); });
+}
+
+double norm(std::span<const double> a) { return std::sqrt(dot(a, a)); }
+
+void add_scaled(double alpha, std::span<const double> x, std::span<double> y) {
+  assert(x.size() == y.size());
+  parallel_for(static_cast<Index>(x.size()), entries_per_task,
+               [&](Index begin, Index end) { add_scaled_kernel(alpha, &x[begin], &y[begin], end - begin); });
+}
+
+void scale_add(double beta, std::span<const double> x, std::span<double> y) {
+  assert(x.size() == y.size());
+  parallel_for(static_cast<Index>(x.size()), entries_per_task,
+               [&](Index begin, Index end) { scale_add_kernel(beta, &x[begin], &y[begin], end - begin); });
+}
+
+void residual_from_product(std::span<const double> b, std::span<double> r) {
+  assert(b.size() == r.size());
+  parallel_for(static_cast<Index>(b.size()), entries_per_task, [&](Index begin, Index end) {
+    for (Index i = begin; i < end; ++i) r[i] = b[i] - r[i];
+  });
+}
+
+bool all_finite(std::span<const double> a) {
+  for (const double value : a)
+    if (!std::isfinite(value)) return false;
+  return true;
+}
+
+}  // namespace taut

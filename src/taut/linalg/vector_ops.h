@@ -1,0 +1,21 @@
+#pragma once
+// Vector operations of the Krylov methods, parallel, with sums in a fixed order (same bits for any thread count). Sizes must agree (asserted).
+
+#include <span>
+
+#include "taut/base/types.h"
+
+namespace taut {
+
+double dot(std::span<const double> a, std::span<const double> b);
+double norm(std::span<const double> a);
+// y += alpha x
+void add_scaled(double alpha, std::span<const double> x, std::span<double> y);
+// y = x + beta y
+void scale_add(double beta, std::span<const double> x, std::span<double> y);
+// r = b - r   (turns a product A x into a residual)
+void residual_from_product(std::span<const double> b, std::span<double> r);
+// True when no entry is NaN or infinite.
+bool all_finite(std::span<const double> a);
+
+}  // namespace taut

@@ -1,0 +1,134 @@
+#include "taut_cholmod/cholmod.h"
+
+#include <cholmod.h>
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace taut {
+
+namespace {
+
+// Whatever BLAS the system's alternatives give us, if it is OpenBLAS it is told to stay on one thread.
+void hold_blas_to_one_thread() {
+  using SetThreads = void (*)(int);
+  if (const auto set_threads = reinterpret_cast<SetThreads>(dlsym(RTLD_DEFAULT, "openblas_set_num_threads"))) set_threads(1);
+}
+
+Status status_from(const cholmod_common& common, const char* phase) {
+  switch (common.status) {
+    case CHOLMOD_OK:
+    case CHOLMOD_DSMALL: return {};
+    case CHOLMOD_NOT_POSDEF: return {Outcome::not_positive_definite, fmt::format("CHOLMOD, {}: the matrix is not positive definite", phase)};
+    case CHOLMOD_OUT_OF_MEMORY:
+    case CHOLMOD_TOO_LARGE: return {Outcome::out_of_memory, fmt::format("CHOLMOD, {}: not enough memory", phase)};
+    default: return {Outcome::breakdown, fmt::format("CHOLMOD, {}: status {}", phase, common.status)};
+  }
+}
+
+}  // namespace
+
+struct CholmodCholesky::Implementation {
+  cholmod_common common;
+  cholmod_factor* factor = nullptr;
+  ScalarCsc csc;
+  cholmod_dense *solution = nullptr, *workspace_y = nullptr, *workspace_e = nullptr;
+
+  Implementation() {
+    cholmod_start(&common);
+    common.error_handler = nullptr;
+    common.print = 0;
+    hold_blas_to_one_thread();
+  }
+  ~Implementation() {
+    release_factor();
+    cholmod_free_dense(&solution, &common);
+    cholmod_free_dense(&workspace_y, &common);
+    cholmod_free_dense(&workspace_e, &common);
+    cholmod_finish(&common);
+  }
+  void release_factor() {
+    if (factor) cholmod_free_factor(&factor, &common);
+  }
+
+  cholmod_sparse view() {
+    cholmod_sparse a{};
+    a.nrow = a.ncol = csc.column_start.size() - 1;
+    a.nzmax = csc.row.size();
+    a.p = csc.column_start.data();
+    a.i = csc.row.data();
+    a.x = csc.value.data();
+    a.stype = -1;  // lower triangle
+    a.itype = CHOLMOD_INT;
+    a.xtype = CHOLMOD_REAL;
+    a.dtype = CHOLMOD_DOUBLE;
+    a.sorted = 1;
+    a.packed = 1;
+    return a;
+  }
+
+  Status solve(int system, std::span<const double> b, std::span<double> x) {
+    cholmod_dense rhs{};
+    rhs.nrow = rhs.d = rhs.nzmax = b.size();
+    rhs.ncol = 1;
+    rhs.x = const_cast<double*>(b.data());
+    rhs.xtype = CHOLMOD_REAL;
+    rhs.dtype = CHOLMOD_DOUBLE;
+    if (!cholmod_solve2(system, factor, &rhs, nullptr, &solution, nullptr, &workspace_y, &workspace_e, &common)) return status_from(common, "solve");
+    const double* values = static_cast<const double*>(solution->x);
+    std::copy(values, values + x.size(), x.begin());
+    return {};
+  }
+};
+
+CholmodCholesky::CholmodCholesky() : implementation_(std::make_unique<Implementation>()) {}
+CholmodCholesky::~CholmodCholesky() = default;
+
+Status CholmodCholesky::analyze(const BlockCsr& a) {
+  Implementation& me = *implementation_;
+  me.release_factor();
+  lower_triangle(a, me.csc);
+  cholmod_sparse view = me.view();
+  me.factor = cholmod_analyze(&view, &me.common);
+  return me.factor ? Status{} : status_from(me.common, "analysis");
+}
+
+Status CholmodCholesky::factorize(const BlockCsr& a) {
+  Implementation& me = *implementation_;
+  lower_triangle(a, me.csc);
+  cholmod_sparse view = me.view();
+  cholmod_factorize(&view, me.factor, &me.common);
+  Status status = status_from(me.common, "factorisation");
+  if (status.outcome == Outcome::not_positive_definite) {
+    const Index unknown = permutation()[std::min(me.factor->minor, me.factor->n - 1)];
+    status.message += fmt::format(" (found at unknown {})", unknown);
+  }
+  return status;
+}
+
+Status CholmodCholesky::solve(std::span<const double> b, std::span<double> x) { return implementation_->solve(CHOLMOD_A, b, x); }
+
+Status CholmodCholesky::solve_permuted(std::span<const double> b, std::span<double> x) { return implementation_->solve(CHOLMOD_LDLt, b, x); }
+
+std::span<const Index> CholmodCholesky::permutation() const {
+  const cholmod_factor* factor = implementation_->factor;
+  if (!factor) return {};
+  return {static_cast<const Index*>(factor->Perm), factor->n};
+}
+
+FactorStatistics CholmodCholesky::statistics() const {
+  const cholmod_common& common = implementation_->common;
+  const cholmod_factor* factor = implementation_->factor;
+  if (!factor) return {};
+  const char* ordering = factor->ordering == CHOLMOD_AMD ? "amd" : factor->ordering == CHOLMOD_METIS ? "metis" : "other";
+  const double bytes = factor->is_super ? 8.0 * static_cast<double>(factor->xsize) + 4.0 * static_cast<double>(factor->ssize)
+                                        : 12.0 * static_cast<double>(factor->nzmax);
+  return {common.lnz, common.fl, bytes, ordering};
+}
+
+void register_cholmod() {
+  register_cholesky("cholmod", [] { return std::make_unique<CholmodCholesky>(); });
+}
+
+}  // namespace taut
