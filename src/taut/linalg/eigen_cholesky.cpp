@@ -1,5 +1,7 @@
 #include "taut/linalg/eigen_cholesky.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/SparseCholesky>
 
 namespace taut {
@@ -7,7 +9,7 @@ namespace taut {
 struct EigenCholesky::Implementation {
   using Sparse = Eigen::SparseMatrix<double, Eigen::ColMajor, Index>;
   ScalarCsc csc;
-  Eigen::SimplicialLLT<Sparse, Eigen::Lower> factor;
+  Eigen::SimplicialLDLT<Sparse, Eigen::Lower> factor;
 
   Eigen::Map<const Sparse> matrix() const {
     const Index n = static_cast<Index>(csc.column_start.size()) - 1;
@@ -31,8 +33,14 @@ Status EigenCholesky::analyze(const BlockCsr& a) {
 Status EigenCholesky::factorize(const BlockCsr& a) {
   lower_triangle(a, implementation_->csc);
   implementation_->factor.factorize(implementation_->matrix());
-  if (implementation_->factor.info() != Eigen::Success)
-    return {Outcome::not_positive_definite, "Cholesky (eigen): a pivot is not positive: the matrix is not positive definite"};
+  // L D Lᵀ also exists for indefinite matrices, so the pivots themselves are looked at.
+  const auto pivots = implementation_->factor.vectorD();
+  const bool complete = implementation_->factor.info() == Eigen::Success;
+  for (Index k = 0; complete && k < static_cast<Index>(pivots.size()); ++k)
+    if (!(pivots[k] > 0.0))
+      return {Outcome::not_positive_definite,
+              fmt::format("Cholesky (eigen): pivot {:.3g} at unknown {}: the matrix is not positive definite", pivots[k], permutation_[k])};
+  if (!complete) return {Outcome::not_positive_definite, "Cholesky (eigen): a zero pivot: the matrix is not positive definite"};
   return {};
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Eigen's SimplicialLLT with approximate minimum degree ordering: the plain baseline, and what core_pcg runs on without CHOLMOD.
+// Eigen's SimplicialLDLT with approximate minimum degree ordering: the plain baseline, and what core_pcg runs on without CHOLMOD.
 
 #include "taut/linalg/sparse_cholesky.h"
 

@@ -7,7 +7,7 @@
 //   permutation()   perm[k] = which unknown of A is k-th in the factor; empty when the backend does not tell
 //   solve_permuted  the same solve for vectors already in the factor's order
 //
-// Implementations: Eigen's SimplicialLLT (here), CHOLMOD (library taut_cholmod, GPL in its supernodal part). They are found by name, so that
+// Implementations: Eigen's SimplicialLDLT (here), CHOLMOD (library taut_cholmod, GPL in its supernodal part). They are found by name, so that
 // libtaut links no GPL code: a program that wants CHOLMOD calls taut::register_cholmod() (taut_cholmod/cholmod.h).
 // One object is used by one thread at a time.
 
