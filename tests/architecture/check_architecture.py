@@ -1,0 +1,166 @@
+#!/usr/bin/env python3
+"""Checks the rules that the source tree keeps: check_architecture.py ROOT prints each breach as FILE:LINE: rule, and ends with 1 if there is any.
+
+The rooms and what each may include are read from the taut_room(NAME ROOMS ...) lines of src/taut/CMakeLists.txt. Other folders of src, and
+apps, stand above all rooms: they may include any room, no room may include them.
+"""
+import re
+import sys
+from pathlib import Path
+
+MAX_LINES = 500
+SOURCES = {".h", ".cpp", ".py", ".cmake"}
+SOURCE_FOLDERS = ["src", "apps", "tests", "bench", "tools", "python", "cmake"]
+# Folders of tests that test the whole project; each other one mirrors a room, a folder of src or a program of apps.
+PROJECT_TESTS = {"apps", "architecture", "install"}
+INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"]+)"')
+
+
+def read_lines(path):
+    return path.read_text(encoding="utf-8").splitlines()
+
+
+def read_rooms(cmake_file):
+    """The declared rooms, in order: name -> (line, set of rooms it may include)."""
+    text = re.sub(r"#.*", "", cmake_file.read_text(encoding="utf-8"))
+    rooms = {}
+    for match in re.finditer(r"taut_room\(([^)]*)\)", text):
+        name, *words = match.group(1).split()
+        allowed, keyword = set(), None
+        for word in words:
+            if word in ("ROOMS", "LIBRARIES", "PRIVATE_LIBRARIES"):
+                keyword = word
+            elif keyword == "ROOMS":
+                allowed.add(word)
+        rooms[name] = (text.count("\n", 0, match.start()) + 1, allowed)
+    return rooms
+
+
+class Checker:
+    def __init__(self, root):
+        self.root = Path(root)
+        self.rooms_file = self.root / "src/taut/CMakeLists.txt"
+        self.rooms = read_rooms(self.rooms_file)
+        self.breaches = []
+
+    def report(self, path, line, rule):
+        self.breaches.append(f"{path.relative_to(self.root)}:{line}: {rule}")
+
+    def files(self, folder, *suffixes):
+        return sorted(p for p in (self.root / folder).rglob("*") if p.suffix in suffixes and p.is_file())
+
+    def check_room_lists(self):
+        if not self.rooms:
+            self.report(self.rooms_file, 1, "no taut_room(...) found: the rooms are declared here")
+        above = set(self.rooms)
+        for name, (line, allowed) in self.rooms.items():
+            for other in sorted(allowed & above):
+                self.report(self.rooms_file, line, f"room {name} names {other}, which is not declared above it: rooms look downwards only")
+            for other in sorted(allowed - set(self.rooms)):
+                self.report(self.rooms_file, line, f"room {name} names {other}, which is no room")
+            above.discard(name)
+        for folder in sorted(p for p in (self.root / "src/taut").iterdir() if p.is_dir()):
+            if folder.name not in self.rooms:
+                self.report(self.rooms_file, 1, f"src/taut/{folder.name} is not declared here with taut_room(...)")
+
+    def check_include(self, path, line, target):
+        """Checks one include; returns the file it names, if it is one of ours."""
+        inside = path.relative_to(self.root).parts
+        room = inside[2] if inside[:2] == ("src", "taut") and len(inside) > 3 else None
+        found = self.root / "src" / target
+        if not found.is_file():
+            # A program may include its own files by their bare names; a room's files are always written from src.
+            beside = path.parent / target
+            if room is None and beside.is_file():
+                return beside
+            self.report(path, line, f'no file of this project is called "{target}": write includes from src, as "taut/ROOM/FILE.h"')
+            return None
+        parts = Path(target).parts
+        if room is not None:
+            if parts[0] != "taut":
+                self.report(path, line, f'room {room} includes "{target}", which stands above all rooms')
+            elif len(parts) > 2 and parts[1] != room and parts[1] not in self.rooms.get(room, (0, set()))[1]:
+                names = " ".join(sorted(self.rooms.get(room, (0, set()))[1])) or "none"
+                self.report(path, line, f'room {room} includes "{target}", but may include only these rooms: {names} (src/taut/CMakeLists.txt)')
+        return found
+
+    def check_includes(self):
+        graph = {}
+        for folder in ("src", "apps"):
+            for path in self.files(folder, ".h", ".cpp"):
+                edges = graph.setdefault(path, [])
+                for number, text in enumerate(read_lines(path), 1):
+                    match = INCLUDE.match(text)
+                    found = match and self.check_include(path, number, match.group(1))
+                    if found:
+                        edges.append((number, found))
+        self.check_circles(graph)
+
+    def check_circles(self, graph):
+        done, trail = set(), []
+
+        def visit(path):
+            trail.append(path)
+            for line, found in graph.get(path, []):
+                if found in trail:
+                    circle = trail[trail.index(found):] + [found]
+                    names = " -> ".join(str(p.relative_to(self.root)) for p in circle)
+                    self.report(path, line, f"circular include: {names}")
+                elif found not in done:
+                    visit(found)
+            trail.pop()
+            done.add(path)
+
+        for path in graph:
+            if path not in done:
+                visit(path)
+
+    def check_files(self):
+        for folder in SOURCE_FOLDERS:
+            for path in self.files(folder, *SOURCES):
+                lines = read_lines(path)
+                if len(lines) > MAX_LINES:
+                    self.report(path, MAX_LINES + 1, f"{len(lines)} lines: a source file has at most {MAX_LINES}")
+                if path.suffix == ".h" and "#pragma once" not in lines:
+                    self.report(path, 1, "a header begins with #pragma once")
+
+    def check_tests_mirror_rooms(self):
+        known = set(self.rooms) | PROJECT_TESTS
+        for parent in ("src", "apps"):
+            if (self.root / parent).is_dir():
+                known |= {p.name for p in (self.root / parent).iterdir() if p.is_dir()}
+        for folder in sorted(p for p in (self.root / "tests").iterdir() if p.is_dir()):
+            if folder.name not in known:
+                self.report(folder, 1, "a folder of tests mirrors a room of src/taut or a folder of src or apps")
+
+    def check_portable_build(self):
+        """Instruction sets are chosen at run time (base/simd.h); an installed binary must start on any machine."""
+        build_files = [self.root / "CMakeLists.txt", self.root / "CMakePresets.json"]
+        for folder in SOURCE_FOLDERS:
+            build_files += [p for p in self.files(folder, ".txt", ".cmake")]
+        for path in build_files:
+            for number, text in enumerate(read_lines(path) if path.is_file() else [], 1):
+                if re.search(r"-m(arch|cpu)=native", text):
+                    self.report(path, number, "no -march=native: instruction sets are chosen at run time (base/simd.h)")
+
+    def run(self):
+        self.check_room_lists()
+        self.check_includes()
+        self.check_files()
+        self.check_tests_mirror_rooms()
+        self.check_portable_build()
+        return self.breaches
+
+
+def main():
+    if len(sys.argv) != 2 or not (Path(sys.argv[1]) / "src/taut/CMakeLists.txt").is_file():
+        print("usage: check_architecture.py ROOT, where ROOT/src/taut/CMakeLists.txt declares the rooms", file=sys.stderr)
+        return 2
+    breaches = Checker(sys.argv[1]).run()
+    for breach in breaches:
+        print(breach)
+    return 1 if breaches else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
