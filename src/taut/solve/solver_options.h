@@ -14,6 +14,8 @@ struct SolverOptions {
   int max_iterations = 0;
   // core_pcg: reorder `matrix` and vectors once before the loop (paper, Section 6, lines 6 and 7), or the `vectors` in each iteration.
   std::string reordering = "vectors";
+  // Direct factorisations: keep the ordering and symbolic work while the pattern is the same. The paper (and the benches) analyse in every step.
+  bool reuse_analysis = true;
 };
 
 }  // namespace taut

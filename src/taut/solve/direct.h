@@ -1,0 +1,24 @@
+#pragma once
+// Direct solution of the reduced system by sparse Cholesky (paper Section 4): analysis, factorisation, one forward and one backward solve.
+
+#include "taut/linalg/sparse_cholesky.h"
+#include "taut/solve/reduced_system.h"
+#include "taut/solve/solver.h"
+
+namespace taut {
+
+class Direct : public ConstrainedSolver {
+ public:
+  // backend: a name known to make_cholesky(), which must be there (asserted).
+  Direct(SolverOptions options, const std::string& backend);
+
+ protected:
+  void run(const LinearSystem& system, std::span<double> x, SolveSummary& summary) override;
+
+ private:
+  std::unique_ptr<SparseCholesky> cholesky_;
+  ReducedSystem reduced_;
+  bool analyzed_ = false;
+};
+
+}  // namespace taut

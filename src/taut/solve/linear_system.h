@@ -1,0 +1,54 @@
+#pragma once
+// The constrained linear system of one step (paper Eq. 5, 6), as every solver of this room receives it:
+//
+//   S A x = S b,   (I - S) x = (I - S) z
+//
+//   matrix       A, symmetric positive definite, 3N x 3N in 3x3 blocks (without constraints: any dims)
+//   rhs          b, 3N doubles
+//   constraints  S and U; null: none
+//   z            3N doubles, the prescribed part of x (its free part is ignored); may be empty without constraints
+//   guess        3N doubles, last step's x, or empty; iterative methods start at S guess + (I-S) z (Ascher & Boxerman 2003)
+//   core         one byte per block of A, 1 for the blocks of the matrix core (paper Section 6); empty: only block-diagonal blocks
+// Units: A kg, b N s, x m/s when x is a velocity change; A kg, b kg m, x m when it is a displacement (BDF2).
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "taut/base/status.h"
+#include "taut/constraint/constraint_set.h"
+#include "taut/linalg/block_csr.h"
+
+namespace taut {
+
+struct LinearSystem {
+  const BlockCsr* matrix = nullptr;
+  std::span<const double> rhs;
+  const ConstraintSet* constraints = nullptr;
+  std::span<const double> z;
+  std::span<const double> guess;
+  std::span<const std::uint8_t> core;
+};
+
+// What a solve did. Times in milliseconds.
+struct SolveSummary {
+  std::string solver;
+  Status status;
+  int iterations = 0;            // 0 for direct methods
+  double stop_value = 0.0;       // iterative: sqrt(δ/δ0) at the end (residual ratio for BiCGSTAB)
+  double start_value = 0.0;      // the same for the initial guess
+  double relative_residual = 0;  // true one, recomputed from A, b, x: |S(b - A x)| / |S(b - A(I-S)z)|; not what the method believes
+  double reduce_ms = 0.0;        // forming Ã, b̃ and the core
+  double order_ms = 0.0;         // analysis (ordering and symbolic work)
+  double factor_ms = 0.0;        // numerical factorisation or other set-up of the preconditioner
+  double solve_ms = 0.0;         // the loop, or the triangular solves
+  double memory_bytes = 0.0;     // what the method holds beyond A and the vectors
+  std::string remark;            // "on eigen: CHOLMOD is not built in", ...
+  double total_ms() const { return reduce_ms + order_ms + factor_ms + solve_ms; }
+};
+
+// |S(b - A(I-S)z)| (0 when nothing drives the system) and the relative residual of x as above.
+double driving_norm(const LinearSystem& system);
+double relative_residual(const LinearSystem& system, std::span<const double> x);
+
+}  // namespace taut

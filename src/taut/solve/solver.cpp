@@ -1,0 +1,120 @@
+#include "taut/solve/solver.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "taut/base/error.h"
+#include "taut/constraint/reduction.h"
+#include "taut/linalg/sparse_cholesky.h"
+#include "taut/linalg/vector_ops.h"
+#include "taut/solve/core_pcg.h"
+#include "taut/solve/direct.h"
+#include "taut/solve/eq10.h"
+#include "taut/solve/mpcg.h"
+#include "taut/solve/ppcg.h"
+#include "taut/solve/upcg.h"
+
+namespace taut {
+
+namespace {
+
+// The list: one line a solver.
+struct Entry {
+  const char* name;
+  std::unique_ptr<ConstrainedSolver> (*make)(const SolverOptions&);
+  const char* backend;  // the Cholesky it cannot do without, or null
+};
+
+const Entry entries[] = {
+    {"mpcg", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<Mpcg>(o, NodeDiagonal::scalar); }, nullptr},
+    {"mpcg:diagonal", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<Mpcg>(o, NodeDiagonal::scalar); }, nullptr},
+    {"mpcg:block_diagonal", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<Mpcg>(o, NodeDiagonal::block); }, nullptr},
+    {"upcg", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<Upcg>(o, UpcgDiagonal::scalar); }, nullptr},
+    {"upcg:diagonal", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<Upcg>(o, UpcgDiagonal::scalar); }, nullptr},
+    {"upcg:block_diagonal", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<Upcg>(o, UpcgDiagonal::block); }, nullptr},
+    {"upcg:reduced_diagonal", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<Upcg>(o, UpcgDiagonal::reduced_scalar); }, nullptr},
+    {"upcg:projected_block_diagonal", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<Upcg>(o, UpcgDiagonal::reduced_block); }, nullptr},
+    {"ppcg", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<Ppcg>(o); }, nullptr},
+    {"eq10", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<Eq10>(o); }, nullptr},
+    {"cholmod", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<Direct>(o, "cholmod"); }, "cholmod"},
+    {"eigen_ldlt", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<Direct>(o, "eigen"); }, nullptr},
+    {"core_pcg", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<CorePcg>(o, ""); }, nullptr},
+    {"core_pcg:cholmod", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<CorePcg>(o, "cholmod"); }, "cholmod"},
+    {"core_pcg:eigen", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<CorePcg>(o, "eigen"); }, nullptr},
+};
+
+const Entry* find_entry(const std::string& name) {
+  for (const Entry& entry : entries)
+    if (name == entry.name) return &entry;
+  return nullptr;
+}
+
+bool available(const Entry& entry) { return !entry.backend || make_cholesky(entry.backend) != nullptr; }
+
+}  // namespace
+
+std::unique_ptr<ConstrainedSolver> make_solver(const SolverOptions& options) {
+  const std::vector<std::string> known = solver_names();
+  const Entry* entry = find_entry(options.name);
+  if (!entry) {
+    const std::string near = nearest_name(options.name, known);
+    throw InputError(fmt::format("unknown solver '{}'{}; the solvers are: {}", options.name, near.empty() ? "" : fmt::format(" (did you mean '{}'?)", near),
+                                 fmt::join(known, ", ")));
+  }
+  if (!available(*entry))
+    throw InputError(fmt::format("solver '{}' needs the {} backend, which is not built into this program; build with -DTAUT_WITH_CHOLMOD=ON, or use one of: {}",
+                                 options.name, entry->backend, fmt::join(known, ", ")));
+  return entry->make(options);
+}
+
+std::vector<std::string> solver_names() {
+  std::vector<std::string> names;
+  for (const Entry& entry : entries)
+    if (available(entry)) names.emplace_back(entry.name);
+  return names;
+}
+
+bool is_solver_name(const std::string& name) { return find_entry(name) != nullptr; }
+
+int ConstrainedSolver::iteration_limit(Index unknowns) const {
+  if (options_.max_iterations > 0) return options_.max_iterations;
+  return static_cast<int>(std::min<std::int64_t>(1'000'000, std::max<std::int64_t>(1000, 10 * std::int64_t{unknowns})));
+}
+
+SolveSummary ConstrainedSolver::solve(const LinearSystem& system, std::span<double> x) {
+  assert(system.matrix && system.rhs.size() == x.size() && static_cast<Index>(x.size()) == system.matrix->dofs());
+  assert(!system.constraints || system.z.size() == x.size());
+  SolveSummary summary;
+  summary.solver = options_.name;
+  if (!all_finite(system.rhs) || !all_finite(system.z)) {
+    summary.status = {Outcome::not_finite, "the right-hand side holds NaN or infinity"};
+    initial_guess(system, x);
+    return summary;
+  }
+  run(system, x, summary);
+  summary.relative_residual = relative_residual(system, x);
+  if (!std::isfinite(summary.relative_residual) && summary.status.ok()) summary.status = {Outcome::not_finite, "the solution holds NaN or infinity"};
+  if (!std::isfinite(summary.relative_residual)) initial_guess(system, x);
+  return summary;
+}
+
+void initial_guess(const LinearSystem& system, std::span<double> x) {
+  if (system.guess.empty()) {
+    std::fill(x.begin(), x.end(), 0.0);
+  } else {
+    std::copy(system.guess.begin(), system.guess.end(), x.begin());
+  }
+  if (!system.constraints) return;
+  for (Index i = 0; i < system.constraints->nodes(); ++i) {
+    if (system.constraints->ndof(i) == 3) continue;
+    Eigen::Map<Vec3> node(&x[3 * static_cast<std::size_t>(i)]);
+    const Vec3 z = Eigen::Map<const Vec3>(&system.z[3 * static_cast<std::size_t>(i)]);
+    node = system.constraints->free_part(i, node) + system.constraints->constrained_part(i, z);
+  }
+}
+
+}  // namespace taut

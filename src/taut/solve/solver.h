@@ -1,0 +1,55 @@
+#pragma once
+// Solvers of the constrained linear system, by name ("METHOD" or "METHOD:VARIANT"):
+//
+//   mpcg[:diagonal|:block_diagonal]      modified PCG on (A, S, z): Baraff & Witkin 1998, as corrected by Ascher & Boxerman 2003   (paper Section 2)
+//   upcg[:diagonal|:block_diagonal]      plain PCG on Ã, M_p⁻¹ restricted to Uᵀ M_p⁻¹ U: step by step the same as mpcg          (Section 3)
+//   upcg:reduced_diagonal                plain PCG on Ã with diag(Ã), which depends on the choice of U
+//   upcg:projected_block_diagonal        plain PCG on Ã with its own diagonal blocks (Boxerman & Ascher 2004)
+//   ppcg                                 pre-filtered PCG on S A S + d (I-S): size and pattern of A kept (Tamstorf et al. 2015)
+//   eq10                                 BiCGSTAB on S A + d (I-S), the paper's Eq. 10, which MATH.md shows to be equivalent after all
+//   cholmod, eigen_ldlt                  direct: sparse Cholesky of Ã                                                              (Section 4)
+//   core_pcg[:cholmod|:eigen]            PCG on Ã, preconditioned by the factorised matrix core                                    (Section 6)
+//
+// d: a mass per node, the mean of A's diagonal there, so that kilograms are not added to pure numbers. Without :VARIANT the first one listed is meant;
+// core_pcg falls back from cholmod to eigen when CHOLMOD is not built in, and says so in the summary's remark.
+// A solver keeps memory and, where allowed, symbolic work between calls. One object, one thread at a time.
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "taut/solve/linear_system.h"
+#include "taut/solve/solver_options.h"
+
+namespace taut {
+
+class ConstrainedSolver {
+ public:
+  virtual ~ConstrainedSolver() = default;
+
+  // Solves and checks: fills x (3N) and returns what happened, with the true residual. Never throws for numerical reasons; when the status is not
+  // ok, x holds the best iterate, or S guess + (I-S) z if there is none.
+  SolveSummary solve(const LinearSystem& system, std::span<double> x);
+
+  // Called by iterative methods after each iteration with (iteration, stop value, x in full space); for histories. It slows the loop down.
+  std::function<void(int, double, std::span<const double>)> observer;
+
+ protected:
+  explicit ConstrainedSolver(SolverOptions options) : options_(std::move(options)) {}
+  virtual void run(const LinearSystem& system, std::span<double> x, SolveSummary& summary) = 0;
+  int iteration_limit(Index unknowns) const;
+
+  SolverOptions options_;
+};
+
+// Throws InputError with the list of names when options.name is unknown, or known but not built in.
+std::unique_ptr<ConstrainedSolver> make_solver(const SolverOptions& options);
+// All names that make_solver takes in this build, default variants without suffix.
+std::vector<std::string> solver_names();
+// True for a name that would be known in a complete build (scene files are checked against this).
+bool is_solver_name(const std::string& name);
+
+// S guess + (I-S) z into x.
+void initial_guess(const LinearSystem& system, std::span<double> x);
+
+}  // namespace taut
