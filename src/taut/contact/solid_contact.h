@@ -1,0 +1,156 @@
+#pragma once
+// Contact of cloth nodes with solids as an active set of constraints (MATH.md's section 3, points 5 and 6; paper Eq. 3-6). Knows nothing of
+// integrators: it hands over constraints and friction impulses, and judges the constraint impulses that come back.
+//
+//   contact          a pair (node, solid). Its normal n and distance say n·(x_end - x_start) = distance: the node ends on the plane that
+//                    touches the solid's surface (outside its thickness) at the end of the step. Two contacts that are not parallel leave
+//                    ndof 1, three leave 0; parallel ones merge (constraint_set.h)
+//   j                constraint impulse on a node, N s, pointing as the solid pushes:  (I - S)(A dv - b)
+//   lambda_k         j split along the node's contact normals (impulse_split.h), N s; j_t what is left. A contact is let go when lambda < 0
+//   sticking         ndof 0: the node ends where the solid's material point carries it. Holds while |j_t| <= sum mu_k lambda_k
+//   sliding          ndof 2 (or 1): friction impulse sum mu_k lambda_k against the direction of relative motion, lambda from the pass
+//   before
+//
+// One step is   begin_step; do { constrain; solve with impulses } while (update); finish.
+// A new contact sticks at first (if mu > 0); contacts of the step before go on as they were. A pass changes the set where it is wrong:
+// releases what pulls (of one node's contacts the one that pulls most), turns stick into slide and back, adds nodes that ended inside,
+// renews planes of nodes that float over a curved surface, renews friction when it is off by more than 1 %, all nodes together.
+// Against cycling: a contact that was let go twice in a step and hit again stays until the next step; a node turns from stick to
+// slide at most three times a step, then sticks. What still ends inside at the pass limit, `finish` moves to the surface.
+//
+// Deterministic (order: node, then solid; the same bits for any thread count). One step at a time, one thread calls; loops run in parallel.
+
+#include <cstdint>
+#include <map>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "taut/constraint/constraint_set.h"
+#include "taut/contact/contact_options.h"
+#include "taut/contact/solid_step.h"
+
+namespace taut {
+
+// What is remembered from one step to the next; one entry a contact, ordered by node, then solid.
+struct ContactState {
+  std::vector<Index> node;
+  std::vector<Index> solid;
+  std::vector<std::uint8_t> sticking;  // 1: the node sticks, 0: it slides
+  std::vector<double> normal_force;    // N: lambda / h
+  bool operator==(const ContactState&) const = default;
+};
+
+// Of the current (or last) step.
+struct ContactCounts {
+  int passes = 0;  // calls of update
+  int added = 0;   // contacts that were not there when the step began to be solved
+  int released = 0;
+  int stick_to_slide = 0;
+  int slide_to_stick = 0;
+  int moved = 0;         // nodes that finish moved out
+  double deepest = 0.0;  // m: the greatest depth of a node inside a solid before finish moved it; 0 if none
+};
+
+class SolidContact {
+ public:
+  SolidContact(std::vector<Solid> solids, Index nodes, ContactOptions options);
+
+  // Start of a step [t, t + h] (s). x: node positions at t, m; x_predicted: where they would be at t + h without contact (x + h v).
+  // pins: the constraints so far; a node with ndof 0 there is never a contact. All three are copied as far as they are needed.
+  // May be called again for the same step (with another h) as long as finish was not.
+  void begin_step(double t, double h, std::span<const Vec3> x, std::span<const Vec3> x_predicted, const ConstraintSet& pins);
+  // Adds this pass's contacts to `constraints`, which starts as the pins'.
+  void constrain(ConstraintSet& constraints) const;
+  // Friction of sliding nodes, one impulse a node, N s, to be added to this pass's momentum equation. Empty if there is none.
+  std::span<const Vec3> impulses() const;
+  // After a pass: x_end, m, and j, N s, one each a node. True when another pass is needed; false at the fixed point or at max_passes.
+  bool update(std::span<const Vec3> x_end, std::span<const Vec3> constraint_impulse);
+  // After the last pass: moves nodes (without pins) that end inside by more than touch_tolerance to the surface and returns how many.
+  // Keeps the contacts for the next step.
+  Index finish(std::span<Vec3> x_end);
+
+  std::span<const Solid> solids() const { return solids_; }
+  int contacts() const { return static_cast<int>(contacts_.size()); }
+  int sticking() const;  // nodes
+  int passes() const { return counts_.passes; }
+  double deepest() const { return counts_.deepest; }
+  const ContactCounts& counts() const { return counts_; }
+
+  // As of the last finish: a run that restores it goes on to the same bits. restore throws InputError on a state that does not fit.
+  const ContactState& state() const { return kept_; }
+  void restore(ContactState state);
+
+ private:
+  struct Contact {
+    Index node = 0;
+    Index solid = 0;
+    Vec3 anchor = Vec3::Zero();  // local, on the surface
+    Vec3 target = Vec3::Zero();  // m, world: where the anchor ends
+    Vec3 normal = Vec3::UnitZ();
+    double distance = 0.0;  // m: n·(x_end - x_start)
+    double lambda = 0.0;    // N s
+    bool slid_before = false;
+    bool stays = false;
+    bool released = false;
+  };
+  // A node in contact, with contacts_[first] ... contacts_[first + count - 1].
+  struct TouchedNode {
+    Index node = 0;
+    Index first = 0;
+    Index count = 0;
+    bool sticking = false;
+    bool turned = false;           // between stick and slide, in this pass
+    bool floats = false;           // its planes must be made anew
+    std::int8_t slides = 0;        // times it turned from stick to slide in this step
+    Vec3 friction = Vec3::Zero();  // N s, of this pass
+    double change = 0.0;           // N s, of friction to the next pass
+  };
+  struct Normals;
+
+  std::span<Contact> of(const TouchedNode& touched) { return {contacts_.data() + touched.first, static_cast<std::size_t>(touched.count)}; }
+  std::span<const Contact> of(const TouchedNode& touched) const {
+    return {contacts_.data() + touched.first, static_cast<std::size_t>(touched.count)};
+  }
+  const SolidStep& step_of(const Contact& contact) const { return steps_[static_cast<std::size_t>(contact.solid)]; }
+  bool has_friction(const TouchedNode& touched) const;
+  const Contact& holder(const TouchedNode& touched) const;
+  Normals normals_of(const TouchedNode& touched) const;
+  Mat3 free_of_pins(Index node) const;
+
+  Contact contact_at(Index node, Index solid, const Vec3& x_end, double touch_tolerance) const;
+  void keep_contacts(double h, std::span<const Vec3> x_predicted);
+  int add_met(std::span<const Vec3> x_end, double largest_gap);
+  void find_met(const SolidStep& step, std::span<const Vec3> x_end, double largest_gap);
+  void group();
+  void renew_planes(std::span<const Vec3> x_end);
+  void start_friction(std::span<const Vec3> x_predicted);
+  Vec3 slip_of(const Contact& contact, const Normals& normals, const Vec3& x_end) const;
+  bool slips(const TouchedNode& touched, const Normals& normals, const Vec3& x_end) const;
+  Vec3 friction_of(const TouchedNode& touched, const Normals& normals, const Vec3& x_end) const;
+  void judge(TouchedNode& touched, const Vec3& x_end, const Vec3& impulse, double negligible);
+  void judge_stick(TouchedNode& touched, const Vec3& tangential, double negligible);
+  void judge_slide(TouchedNode& touched, const Normals& normals, const Vec3& x_end);
+  int drop_released();
+  void fill_impulses();
+  bool move_out(Index node, Vec3& x_end, double& depth) const;
+  void remember();
+
+  std::vector<Solid> solids_;
+  ContactOptions options_;
+  Index nodes_;
+  double h_ = 0.0;
+  std::vector<SolidStep> steps_;  // one a solid
+  std::vector<Vec3> start_;       // m: x at t
+  std::vector<std::int8_t> pin_ndof_;
+  std::vector<std::pair<Index, Mat3>> partial_pins_;  // S of nodes with ndof 1 or 2, by node
+  std::vector<Contact> contacts_;                     // by node, then solid
+  std::vector<TouchedNode> touched_;                  // by node
+  std::map<std::pair<Index, Index>, int> releases_;   // (node, solid) -> how often in this step
+  std::vector<Vec3> impulses_;                        // one a node, if any slides with friction
+  std::vector<std::uint8_t> met_;
+  ContactCounts counts_;
+  ContactState kept_;
+};
+
+}  // namespace taut
