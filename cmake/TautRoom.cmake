@@ -1,8 +1,9 @@
 # A room is one folder of src/taut: an object library that may include only the rooms it names.
-#   taut_room(NAME ROOMS base linalg LIBRARIES Eigen3::Eigen PRIVATE_LIBRARIES TBB::tbb)
+#   taut_room(NAME ROOMS base linalg LIBRARIES Eigen3::Eigen PRIVATE_LIBRARIES PkgConfig::cairo PRIVATE_HEADERS cairo_canvas.h)
+# PRIVATE_HEADERS are those that include a header of a private library, or another private header: they are not installed.
 # libtaut is made of all rooms; a test program of a room links only that room and those below it.
 function(taut_room name)
-  cmake_parse_arguments(arg "" "" "ROOMS;LIBRARIES;PRIVATE_LIBRARIES" ${ARGN})
+  cmake_parse_arguments(arg "" "" "ROOMS;LIBRARIES;PRIVATE_LIBRARIES;PRIVATE_HEADERS" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cpp)
   set(all_rooms ${name})
   set(all_libraries ${arg_LIBRARIES} ${arg_PRIVATE_LIBRARIES})
@@ -19,6 +20,8 @@ function(taut_room name)
   set_property(GLOBAL APPEND PROPERTY TAUT_ROOMS ${name})
   set_property(GLOBAL APPEND PROPERTY TAUT_PUBLIC_LIBRARIES ${arg_LIBRARIES})
   set_property(GLOBAL APPEND PROPERTY TAUT_PRIVATE_LIBRARIES ${arg_PRIVATE_LIBRARIES})
+  list(TRANSFORM arg_PRIVATE_HEADERS PREPEND ${name}/)
+  set_property(GLOBAL APPEND PROPERTY TAUT_PRIVATE_HEADERS ${arg_PRIVATE_HEADERS})
   if(NOT sources)
     set(sources ${CMAKE_SOURCE_DIR}/cmake/empty.cpp)
   endif()

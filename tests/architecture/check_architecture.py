@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """Checks the rules that the source tree keeps: check_architecture.py ROOT prints each breach as FILE:LINE: rule, and ends with 1 if there is any.
 
-The rooms and what each may include are read from the taut_room(NAME ROOMS ...) lines of src/taut/CMakeLists.txt. Other folders of src, and
-apps, stand above all rooms: they may include any room, no room may include them.
+The rooms, what each may include and which of its headers are private are read from the taut_room(NAME ROOMS ... PRIVATE_HEADERS ...) lines of
+src/taut/CMakeLists.txt. Other folders of src, and apps, stand above all rooms: they may include any room, no room may include them.
 """
 import re
 import sys
+import typing
 from pathlib import Path
 
 MAX_LINES = 500
@@ -13,7 +14,15 @@ SOURCES = {".h", ".cpp", ".py", ".cmake"}
 SOURCE_FOLDERS = ["src", "apps", "tests", "bench", "tools", "python", "cmake"]
 # Folders of tests that test the whole project; each other one mirrors a room, a folder of src or a program of apps.
 PROJECT_TESTS = {"apps", "architecture", "install"}
-INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"]+)"')
+INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]')
+# Libraries that a program which uses Taut's headers must have too. The C++ library's own headers have neither a dot nor a slash.
+PUBLIC_LIBRARIES = ("Eigen/", "fmt/", "tbb/")
+
+
+class Room(typing.NamedTuple):
+    line: int  # where it is declared
+    may_include: set
+    private_headers: set
 
 
 def read_lines(path):
@@ -21,18 +30,21 @@ def read_lines(path):
 
 
 def read_rooms(cmake_file):
-    """The declared rooms, in order: name -> (line, set of rooms it may include)."""
+    """The declared rooms, in order: name -> Room."""
     text = re.sub(r"#.*", "", cmake_file.read_text(encoding="utf-8"))
     rooms = {}
     for match in re.finditer(r"taut_room\(([^)]*)\)", text):
         name, *words = match.group(1).split()
-        allowed, keyword = set(), None
+        room = Room(text.count("\n", 0, match.start()) + 1, set(), set())
+        keyword = None
         for word in words:
-            if word in ("ROOMS", "LIBRARIES", "PRIVATE_LIBRARIES"):
+            if word in ("ROOMS", "LIBRARIES", "PRIVATE_LIBRARIES", "PRIVATE_HEADERS"):
                 keyword = word
             elif keyword == "ROOMS":
-                allowed.add(word)
-        rooms[name] = (text.count("\n", 0, match.start()) + 1, allowed)
+                room.may_include.add(word)
+            elif keyword == "PRIVATE_HEADERS":
+                room.private_headers.add(f"taut/{name}/{word}")
+        rooms[name] = room
     return rooms
 
 
@@ -41,6 +53,7 @@ class Checker:
         self.root = Path(root)
         self.rooms_file = self.root / "src/taut/CMakeLists.txt"
         self.rooms = read_rooms(self.rooms_file)
+        self.private_headers = set().union(*(room.private_headers for room in self.rooms.values()))
         self.breaches = []
 
     def report(self, path, line, rule):
@@ -53,36 +66,53 @@ class Checker:
         if not self.rooms:
             self.report(self.rooms_file, 1, "no taut_room(...) found: the rooms are declared here")
         above = set(self.rooms)
-        for name, (line, allowed) in self.rooms.items():
-            for other in sorted(allowed & above):
-                self.report(self.rooms_file, line, f"room {name} names {other}, which is not declared above it: rooms look downwards only")
-            for other in sorted(allowed - set(self.rooms)):
-                self.report(self.rooms_file, line, f"room {name} names {other}, which is no room")
+        for name, room in self.rooms.items():
+            for other in sorted(room.may_include & above):
+                self.report(self.rooms_file, room.line, f"room {name} names {other}, which is not declared above it: rooms look downwards only")
+            for other in sorted(room.may_include - set(self.rooms)):
+                self.report(self.rooms_file, room.line, f"room {name} names {other}, which is no room")
+            for header in sorted(room.private_headers):
+                if not (self.root / "src" / header).is_file():
+                    self.report(self.rooms_file, room.line, f"{header} is named a private header, but there is no such file")
             above.discard(name)
         for folder in sorted(p for p in (self.root / "src/taut").iterdir() if p.is_dir()):
             if folder.name not in self.rooms:
                 self.report(self.rooms_file, 1, f"src/taut/{folder.name} is not declared here with taut_room(...)")
 
+    def find(self, path, target):
+        """The project's file that an include names, or None. A program may include its own files by their bare names; a room's never are."""
+        folders = [self.root / "src", self.root / "src/taut_cholmod"]
+        if self.room_of(path) is None:
+            folders.append(path.parent)
+        return next((f / target for f in folders if (f / target).is_file()), None)
+
+    def room_of(self, path):
+        parts = path.relative_to(self.root).parts
+        return parts[2] if parts[:2] == ("src", "taut") and len(parts) > 3 else None
+
     def check_include(self, path, line, target):
-        """Checks one include; returns the file it names, if it is one of ours."""
-        inside = path.relative_to(self.root).parts
-        room = inside[2] if inside[:2] == ("src", "taut") and len(inside) > 3 else None
-        found = self.root / "src" / target
-        if not found.is_file():
-            # A program may include its own files by their bare names; a room's files are always written from src.
-            beside = path.parent / target
-            if room is None and beside.is_file():
-                return beside
+        """Checks the include of one of our own files; returns that file, or None if there is none."""
+        found = self.find(path, target)
+        if found is None:
             self.report(path, line, f'no file of this project is called "{target}": write includes from src, as "taut/ROOM/FILE.h"')
             return None
-        parts = Path(target).parts
-        if room is not None:
-            if parts[0] != "taut":
-                self.report(path, line, f'room {room} includes "{target}", which stands above all rooms')
-            elif len(parts) > 2 and parts[1] != room and parts[1] not in self.rooms.get(room, (0, set()))[1]:
-                names = " ".join(sorted(self.rooms.get(room, (0, set()))[1])) or "none"
-                self.report(path, line, f'room {room} includes "{target}", but may include only these rooms: {names} (src/taut/CMakeLists.txt)')
+        room, other = self.room_of(path), self.room_of(found)
+        if room in self.rooms and other is None:
+            self.report(path, line, f'room {room} includes "{target}", which stands above all rooms')
+        elif room in self.rooms and other != room and other not in self.rooms[room].may_include:
+            names = " ".join(sorted(self.rooms[room].may_include)) or "none"
+            self.report(path, line, f'room {room} includes "{target}", but may include only these rooms: {names} (src/taut/CMakeLists.txt)')
+        if self.is_public(path) and target in self.private_headers:
+            self.report(path, line, f'a public header includes "{target}", which is private and not installed (src/taut/CMakeLists.txt)')
         return found
+
+    def is_public(self, path):
+        return path.suffix == ".h" and self.room_of(path) is not None and str(path.relative_to(self.root / "src")) not in self.private_headers
+
+    def check_library_include(self, path, line, target):
+        if self.is_public(path) and re.search(r"[./]", target) and not target.startswith(PUBLIC_LIBRARIES):
+            self.report(path, line, f"a public header includes <{target}>; only headers of {', '.join(PUBLIC_LIBRARIES)} may be. "
+                        "Keep it in a source file, or name this header under PRIVATE_HEADERS in src/taut/CMakeLists.txt")
 
     def check_includes(self):
         graph = {}
@@ -91,9 +121,11 @@ class Checker:
                 edges = graph.setdefault(path, [])
                 for number, text in enumerate(read_lines(path), 1):
                     match = INCLUDE.match(text)
-                    found = match and self.check_include(path, number, match.group(1))
-                    if found:
-                        edges.append((number, found))
+                    if match and match.group(1) == "<":
+                        self.check_library_include(path, number, match.group(2))
+                    elif match:
+                        found = self.check_include(path, number, match.group(2))
+                        edges += [(number, found)] if found else []
         self.check_circles(graph)
 
     def check_circles(self, graph):

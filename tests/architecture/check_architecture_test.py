@@ -10,7 +10,7 @@ import unittest
 from pathlib import Path
 
 sys.dont_write_bytecode = True
-from check_architecture import MAX_LINES, SOURCE_FOLDERS, Checker, read_rooms  # noqa: E402
+from check_architecture import MAX_LINES, SOURCE_FOLDERS, Checker, Room, read_rooms  # noqa: E402
 
 ROOT = Path(sys.argv.pop())
 
@@ -49,8 +49,17 @@ class PlantedMistakes(unittest.TestCase):
         self.expect(self.append("src/taut/contact/beside.cpp", '  #  include "taut/step/beside.h"'), "room contact", "only these rooms: base")
 
     def test_room_includes_what_stands_above(self):
-        self.append("src/taut_cholmod/above.h", "#pragma once")
+        self.append("src/taut_cholmod/taut_cholmod/above.h", "#pragma once")
         self.expect(self.append("src/taut/solve/above.cpp", '#include "taut_cholmod/above.h"'), "stands above all rooms")
+
+    def test_public_header_includes_a_private_library(self):
+        self.expect(self.append("src/taut/picture/image.h", "#include <cairo.h>"), "a public header includes <cairo.h>")
+
+    def test_public_header_includes_a_private_header(self):
+        rooms = self.root / "src/taut/CMakeLists.txt"
+        rooms.write_text(rooms.read_text().replace("taut_room(base ", "taut_room(base PRIVATE_HEADERS inner.h "))
+        self.append("src/taut/base/inner.h", "#pragma once\n#include <cairo.h>")
+        self.expect(self.append("src/taut/base/types.h", '#include "taut/base/inner.h"'), "which is private and not installed")
 
     def test_circular_include_within_a_room(self):
         self.append("src/taut/base/one.h", '#pragma once\n#include "taut/base/two.h"')
@@ -86,8 +95,9 @@ class PlantedMistakes(unittest.TestCase):
 
     def test_room_lists_are_read_with_their_line_breaks_and_keywords(self):
         (self.root / "rooms.txt").write_text(
-            "taut_room(base LIBRARIES fmt::fmt)\n# taut_room(old)\ntaut_room(mesh ROOMS base\n  PRIVATE_LIBRARIES a b)\n")
-        self.assertEqual(read_rooms(self.root / "rooms.txt"), {"base": (1, set()), "mesh": (3, {"base"})})
+            "taut_room(base LIBRARIES fmt::fmt)\n# taut_room(old)\ntaut_room(mesh ROOMS base\n  PRIVATE_LIBRARIES a b\n  PRIVATE_HEADERS c.h)\n")
+        self.assertEqual(read_rooms(self.root / "rooms.txt"),
+                         {"base": Room(1, set(), set()), "mesh": Room(3, {"base"}, {"taut/mesh/c.h"})})
 
 
 if __name__ == "__main__":

@@ -1,23 +1,33 @@
 # Installs the build into an empty folder, then configures, builds and runs a project that knows only that folder.
-#   cmake -D BUILD=... -D WORK=... -D GENERATOR=... -D COMPILER=... -D HAS_APP=ON -P find_package_test.cmake
+#   cmake -D BUILD=... -D WORK=... -D GENERATOR=... -D COMPILER=... -D HAS_APP=ON -D HAS_CHOLMOD=ON -P find_package_test.cmake
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE code OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(NOT code EQUAL 0)
     list(JOIN ARGN " " command)
-    message(FATAL_ERROR "'${command}' ended with ${code}:\n${output}")
+    message("${output}")
+    message(FATAL_ERROR "'${command}' ended with ${code}; its output stands above")
   endif()
-  set(output ${output} PARENT_SCOPE)
+  set(output "${output}" PARENT_SCOPE)
+endfunction()
+
+function(run_and_expect program expected)
+  run(${program})
+  if(NOT output STREQUAL expected)
+    message(FATAL_ERROR "${program} printed '${output}', expected '${expected}'")
+  endif()
 endfunction()
 
 file(REMOVE_RECURSE ${WORK})
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
 run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/consumer -B ${WORK}/build -G ${GENERATOR} -D CMAKE_CXX_COMPILER=${COMPILER}
-    -D CMAKE_BUILD_TYPE=Release -D CMAKE_PREFIX_PATH=${WORK}/prefix)
+    -D CMAKE_BUILD_TYPE=Release -D CMAKE_PREFIX_PATH=${WORK}/prefix -D EXPECT_CHOLMOD=${HAS_CHOLMOD})
 run(${CMAKE_COMMAND} --build ${WORK}/build)
-run(${WORK}/build/consumer)
 # A 1 m x 1 m grid of 5 x 4 nodes: rows of 5 nodes at heights 0, 1/3, 2/3 and 1.
-if(NOT output STREQUAL "nodes 20, triangles 24, sum of heights 10\n")
-  message(FATAL_ERROR "the consumer printed: ${output}")
+run_and_expect(${WORK}/build/consumer "nodes 20, triangles 24, sum of heights 10\n")
+if(HAS_CHOLMOD)
+  run_and_expect(${WORK}/build/factorise "cholmod: x = 0.5\n")
+else()
+  run_and_expect(${WORK}/build/factorise "eigen: x = 0.5\n")
 endif()
 if(HAS_APP)
   run(${WORK}/prefix/bin/taut --help)
