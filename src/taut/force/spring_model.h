@@ -1,0 +1,40 @@
+#pragma once
+// All springs of one class (stretch, shear or bend) of one cloth, as a ForceModel. Formulas: spring_law.h. Each spring adds [B -B; -B B] to the matrix
+// and g, -g to the vector, B and g as ForceModel's combination.
+
+#include "taut/force/force_model.h"
+#include "taut/force/spring_law.h"
+
+namespace taut {
+
+struct Spring {
+  Index i = 0, j = 0;
+  SpringParameters parameters;
+};
+
+class SpringModel : public ForceModel {
+ public:
+  SpringModel(ForceClass force_class, SpringLawKind law, std::vector<Spring> springs)
+      : class_(force_class), law_(law), springs_(std::move(springs)) {}
+
+  ForceClass force_class() const override { return class_; }
+  Index block_count() const override { return static_cast<Index>(springs_.size()); }
+  Index vector_count() const override { return block_count(); }
+  void connect(ConnectionSink& sink) const override;
+  void evaluate(const ForceRequest& request, std::span<double> blocks, std::span<Vec3> vectors) const override;
+  double energy(std::span<const Vec3> x) const override;
+  Index collapsed(std::span<const Vec3> x) const override;
+
+  SpringLawKind law() const { return law_; }
+  std::span<const Spring> springs() const { return springs_; }
+
+ private:
+  ForceClass class_;
+  SpringLawKind law_;
+  std::vector<Spring> springs_;
+};
+
+// L/L0 - 1 of every spring: 0 at rest, negative when compressed.
+std::vector<double> spring_strains(const SpringModel& model, std::span<const Vec3> x);
+
+}  // namespace taut
