@@ -11,8 +11,8 @@
 #include <thread>
 
 #if defined(TAUT_THREAD_SANITIZER)
-// oneTBB is not compiled with the thread sanitizer and neither is this file (src/taut/CMakeLists.txt): the sanitizer is told of the hand-over
-// of work here, and sees nothing of how it is done. What the loops' bodies do it sees.
+// oneTBB is not compiled with the thread sanitizer and neither is this file (src/taut/CMakeLists.txt): the sanitizer is told of the
+// hand-over of work here, and sees nothing of how it is done. What the loops' bodies do it sees.
 extern "C" void __tsan_acquire(void*);
 extern "C" void __tsan_release(void*);
 #define TAUT_TSAN_ACQUIRE(p) __tsan_acquire(p)
