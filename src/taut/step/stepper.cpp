@@ -1,0 +1,102 @@
+#include "taut/step/stepper.h"
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+#include "taut/base/timer.h"
+#include "taut/constraint/reduction.h"
+#include "taut/linalg/vector_ops.h"
+
+namespace taut {
+
+namespace {
+
+std::vector<bool> implicit_models(const std::vector<const ForceModel*>& models, const Integrator& integrator) {
+  std::vector<bool> implicit;
+  for (const ForceModel* model : models) implicit.push_back(integrator.is_implicit(model->force_class()));
+  return implicit;
+}
+
+}  // namespace
+
+Stepper::Stepper(Index nodes, std::vector<const ForceModel*> models, ExternalForces external, IntegratorKind integrator, SolverOptions solver)
+    : integrator_(make_integrator(integrator)),
+      models_(std::move(models)),
+      external_(std::move(external)),
+      assembler_(nodes, models_, implicit_models(models_, *integrator_)),
+      solver_(make_solver(solver)),
+      core_(assembler_.core_mask(ForceClass::stretch)),
+      a_(assembler_.pattern()) {
+  for (const ForceModel* model : models_)
+    if (model->force_class() == ForceClass::stretch) core_springs_ += model->block_count();
+  const std::size_t n = static_cast<std::size_t>(nodes);
+  for (auto* field : {&b_, &rhs_, &z_, &unknown_, &x_end_, &v_end_, &impulse_}) field->assign(n, Vec3::Zero());
+}
+
+void Stepper::begin(const State& state, double h) {
+  Timer timer;
+  state_ = &state;
+  h_ = h;
+  external_.evaluate(state.time, state.x, state.v);
+  integrator_->assemble(assembler_, external_, state, h, a_, b_);
+  guess_ = state.last;
+  assemble_ms_ = timer.milliseconds();
+}
+
+SolveSummary Stepper::solve(const ConstraintSet& constraints, std::span<const Vec3> impulses) {
+  assert(state_);
+  constraints_ = &constraints;
+  rhs_ = b_;
+  const double per_impulse = integrator_->rhs_per_impulse(*state_, h_);
+  for (std::size_t i = 0; i < impulses.size(); ++i) rhs_[i] += per_impulse * impulses[i];
+  integrator_->prescribe(constraints, *state_, h_, z_);
+  SolveSummary summary = solver_->solve(system(), flat(unknown_));
+  guess_ = unknown_;  // the next pass starts from here
+  integrator_->finish(*state_, h_, unknown_, x_end_, v_end_);
+
+  multiply(a_, flat(unknown_), flat(impulse_));
+  for (Index i = 0; i < constraints.nodes(); ++i)
+    impulse_[i] = constraints.ndof(i) == 3 ? Vec3(Vec3::Zero()) : Vec3(constraints.constrained_part(i, impulse_[i] - rhs_[i]) / per_impulse);
+  return summary;
+}
+
+LinearSystem Stepper::system() const {
+  LinearSystem system;
+  system.matrix = &a_;
+  system.rhs = flat(rhs_);
+  system.constraints = constraints_;
+  system.z = flat(z_);
+  system.guess = flat(guess_);
+  system.core = core_;
+  return system;
+}
+
+void Stepper::commit(State& state) {
+  const std::string solved_for = integrator_->unknown(state);
+  state.x_prev = std::exchange(state.x, x_end_);
+  state.v_prev = std::exchange(state.v, v_end_);
+  state.last = unknown_;
+  state.time += h_;
+  state.has_previous = true;
+  forget_other_unknown(state, solved_for);
+}
+
+// A velocity change is no guess for a displacement: BDF2 switches between the two.
+void Stepper::forget_other_unknown(State& state, const std::string& solved_for) const {
+  if (integrator_->unknown(state) != solved_for) state.last.clear();
+}
+
+void Stepper::commit(State& state, std::span<const Vec3> corrected) {
+  const std::string solved_for = integrator_->unknown(state);
+  commit(state);
+  for (std::size_t i = 0; i < corrected.size(); ++i) {
+    state.v[i] += (corrected[i] - state.x[i]) / h_;
+    state.x[i] = corrected[i];
+  }
+  state.has_previous = false;
+  state.last = unknown_;
+  forget_other_unknown(state, solved_for);
+}
+
+}  // namespace taut

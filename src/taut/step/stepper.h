@@ -1,0 +1,66 @@
+#pragma once
+// One step: assemble -> constrain -> solve -> update. Contact may ask for several solves of the same assembled system with other constraints and
+// impulses (passes); the loop in scene/ joins the two.
+//
+//   begin(state, h)              A and b, once
+//   solve(constraints, impulses) the unknown, the end positions and velocities, the constraint impulses; may be repeated
+//   commit(state, ...)           takes the last solve's end state (or a corrected one) over
+//
+// Constraint impulse (N s, on each node): j = (I - S)(A u - b), scaled to an impulse (MATH.md 3.6). A positive n·j pushes along n.
+
+#include <cstdint>
+#include <memory>
+
+#include "taut/solve/solver.h"
+#include "taut/step/integrator.h"
+
+namespace taut {
+
+class Stepper {
+ public:
+  // models: not owned. core_class: which springs make the matrix core.
+  Stepper(Index nodes, std::vector<const ForceModel*> models, ExternalForces external, IntegratorKind integrator, SolverOptions solver);
+
+  void begin(const State& state, double h);
+  SolveSummary solve(const ConstraintSet& constraints, std::span<const Vec3> impulses);
+  std::span<const Vec3> x_end() const { return x_end_; }
+  std::span<const Vec3> v_end() const { return v_end_; }
+  std::span<const Vec3> constraint_impulse() const { return impulse_; }
+
+  // Ends the step: state becomes (x_end, v_end) at time + h. `corrected` positions (contact) replace x_end, the velocity is changed by what they
+  // moved over h, and a multistep method starts afresh.
+  void commit(State& state);
+  void commit(State& state, std::span<const Vec3> corrected);
+
+  // The system of the last begin/solve, for dumps, benches and other solvers. Valid until the next call.
+  LinearSystem system() const;
+  const BlockCsr& matrix() const { return a_; }
+  std::span<const std::uint8_t> core_mask() const { return core_; }
+  Index core_springs() const { return core_springs_; }
+  std::span<const Vec3> unknown() const { return unknown_; }
+  const Integrator& integrator() const { return *integrator_; }
+  const ExternalForces& external() const { return external_; }
+  Assembler& assembler() { return assembler_; }
+  double assemble_ms() const { return assemble_ms_; }
+  // ρ of MATH.md section 5 for the assembled system and its core.
+  double remainder_ratio() const { return assembler_.remainder_ratio(core_, external_.masses()); }
+
+ private:
+  void forget_other_unknown(State& state, const std::string& solved_for) const;
+
+  std::unique_ptr<Integrator> integrator_;
+  std::vector<const ForceModel*> models_;
+  ExternalForces external_;
+  Assembler assembler_;
+  std::unique_ptr<ConstrainedSolver> solver_;
+  std::vector<std::uint8_t> core_;
+  Index core_springs_ = 0;
+
+  const State* state_ = nullptr;
+  const ConstraintSet* constraints_ = nullptr;
+  double h_ = 0.0, assemble_ms_ = 0.0;
+  BlockCsr a_;
+  std::vector<Vec3> b_, rhs_, z_, guess_, unknown_, x_end_, v_end_, impulse_;
+};
+
+}  // namespace taut
