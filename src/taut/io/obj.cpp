@@ -9,6 +9,7 @@
 
 #include "taut/io/polygon_fan.h"
 #include "taut/io/text_cursor.h"
+#include "taut/io/text_file.h"
 
 namespace taut {
 
@@ -76,7 +77,7 @@ class ObjReader {
 
   void note_unknown(std::string_view keyword) {
     constexpr std::size_t most_named = 20;
-    const std::string name = quoted(keyword);
+    const std::string name = in_quotes(keyword);
     if (unknown_.size() >= most_named || std::find(unknown_.begin(), unknown_.end(), name) != unknown_.end()) return;
     unknown_.push_back(name);
     note(cursor_.line_of_word(), "the statement " + name + " is not OBJ; lines with it were passed over");
@@ -88,9 +89,9 @@ class ObjReader {
     if (word.empty() || word[0] == '#') fail(std::string(what) + " is missing; the line ends too early");
     double value = 0;
     const NumberFault fault = parse_number(word, value);
-    if (fault == NumberFault::not_a_number) fail(std::string(what) + " is " + quoted(word) + ", a number was expected");
+    if (fault == NumberFault::not_a_number) fail(std::string(what) + " is " + in_quotes(word) + ", a number was expected");
     if (fault == NumberFault::too_large || !std::isfinite(value))
-      fail(std::string(what) + " is " + quoted(word) +
+      fail(std::string(what) + " is " + in_quotes(word) +
            ", a finite number was expected; mend this vertex in the program that wrote the file");
     return value;
   }
@@ -102,7 +103,7 @@ class ObjReader {
       double unused = 0;
       if (is_comment(word)) return;
       if (parse_number(word, unused) == NumberFault::not_a_number)
-        fail("found " + quoted(word) + ", a number or the end of the line was expected");
+        fail("found " + in_quotes(word) + ", a number or the end of the line was expected");
     }
   }
 
@@ -128,11 +129,11 @@ class ObjReader {
     std::int64_t index = 0;
     const NumberFault fault = parse_integer(digits, index);
     if (fault == NumberFault::not_a_number)
-      fail(std::string(what) + " index is " + quoted(digits) + ", a whole number was expected (a corner is v, v/vt, v//vn or v/vt/vn)");
+      fail(std::string(what) + " index is " + in_quotes(digits) + ", a whole number was expected (a corner is v, v/vt, v//vn or v/vt/vn)");
     if (fault == NumberFault::none && index == 0) fail(std::string(what) + " index is 0; OBJ counts from 1");
     const auto known = static_cast<std::int64_t>(count);
     if (fault == NumberFault::too_large || index > std::numeric_limits<Index>::max() || index < -known)
-      fail(std::string(what) + " index is " + quoted(digits) + ", but the file has only " + std::to_string(count) + " so far");
+      fail(std::string(what) + " index is " + in_quotes(digits) + ", but the file has only " + std::to_string(count) + " so far");
     if (index < 0) return static_cast<Index>(known + index);
     const Index value = static_cast<Index>(index - 1);
     if (index > known) forward.push_back({value, cursor_.line_of_word(), cursor_.column_of_word()});
@@ -171,7 +172,7 @@ class ObjReader {
   void check_normal(std::string_view normal) const {
     std::int64_t unused = 0;
     if (!normal.empty() && parse_integer(normal, unused) == NumberFault::not_a_number)
-      fail("normal index is " + quoted(normal) + ", a whole number was expected (a corner is v, v/vt, v//vn or v/vt/vn)");
+      fail("normal index is " + in_quotes(normal) + ", a whole number was expected (a corner is v, v/vt, v//vn or v/vt/vn)");
   }
 
   void check_forward(const std::vector<ForwardIndex>& forward, std::size_t count, const char* what) const {

@@ -1,23 +1,18 @@
-#include <charconv>
 #include <ostream>
 #include <string>
 
 #include "taut/base/file.h"
 #include "taut/io/obj.h"
+#include "taut/io/shortest_decimal.h"
 
 namespace taut {
 
 namespace {
 
-void append(std::string& text, double value) {
-  char digits[32];
-  text.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
-}
-
 template <class Vector>
 std::string statement(const char* keyword, const Vector& v) {
   std::string line = keyword;
-  for (Eigen::Index i = 0; i < v.size(); ++i) append(line += ' ', v[i]);
+  for (Eigen::Index i = 0; i < v.size(); ++i) append_decimal(line += ' ', v[i]);
   return line += '\n';
 }
 

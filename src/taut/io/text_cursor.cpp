@@ -35,7 +35,7 @@ bool is_huge(std::string_view word) {
 
 }  // namespace
 
-std::string quoted(std::string_view word) {
+std::string in_quotes(std::string_view word) {
   constexpr std::size_t longest = 40;
   constexpr char hex[] = "0123456789abcdef";
   std::string text = "'";
@@ -107,6 +107,12 @@ std::string_view TextCursor::word() {
   const std::size_t begin = position_;
   while (!at_end() && !is_blank(text_[position_]) && line_end_length(position_) == 0 && !continuation(position_)) ++position_;
   return text_.substr(begin, position_ - begin);
+}
+
+bool TextCursor::find_content(char mark) {
+  for (; !at_end(); next_line())
+    if (!at_line_end() && text_[position_] != mark) return true;
+  return false;
 }
 
 void TextCursor::skip_comment() {

@@ -5,7 +5,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <string>
 #include <string_view>
 
@@ -13,12 +12,8 @@
 
 namespace taut {
 
-// The whole text file, unpacked when it is gzip (recognised by its first two bytes), without a UTF-8 byte order mark.
-// Throws InputError when it cannot be read, does not unpack, is UTF-16 or UTF-32, or holds a zero byte (so it is not text).
-std::string read_text_file(const std::filesystem::path& path);
-
 // `word` in quotation marks for a message: shortened to 40 characters, unprintable bytes as \xNN.
-std::string quoted(std::string_view word);
+std::string in_quotes(std::string_view word);
 
 enum class NumberFault { none, not_a_number, too_large };
 
@@ -41,6 +36,8 @@ class TextCursor {
   // Goes to the next line; skip_comment before it keeps a backslash at the end of a comment from joining lines.
   void next_line();
   void skip_comment();
+  // A line with nothing but blanks, or a comment that begins with `mark`, is passed over; false when none but such are left.
+  bool find_content(char mark);
 
   // Where the last word began (or where one was missing).
   SourcePlace place() const { return {file_, word_line_, word_column_}; }

@@ -1,8 +1,9 @@
-// read_text_file: bytes to text, with the encodings that are refused.
+#include "taut/io/text_file.h"
+
 #include <zlib.h>
 
+#include "taut/base/error.h"
 #include "taut/base/file.h"
-#include "taut/io/text_cursor.h"
 
 namespace taut {
 
