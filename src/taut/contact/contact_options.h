@@ -8,6 +8,7 @@ struct ContactOptions {
   int max_passes = 8;
   // A node this close (m) to a solid's (thickened) surface touches it.
   double touch_tolerance = 1e-6;
+  bool operator==(const ContactOptions&) const = default;
 };
 
 }  // namespace taut

@@ -21,11 +21,13 @@ struct Pose {
   Vec3 translation = Vec3::Zero();
   Vec3 to_world(const Vec3& local) const { return rotation * local + translation; }
   Vec3 to_local(const Vec3& world) const { return rotation.conjugate() * (world - translation); }
+  bool operator==(const Pose&) const = default;
 };
 
 struct KeyFrame {
   double time = 0.0;
   Pose pose;
+  bool operator==(const KeyFrame&) const = default;
 };
 
 enum class SolidShape { sphere, plane, cylinder, box };
@@ -48,6 +50,7 @@ struct Solid {
   Vec3 angular_velocity = Vec3::Zero();
 
   Pose pose(double time) const;
+  bool operator==(const Solid&) const = default;
 };
 
 // Signed distance (m, negative inside, thickness not counted) from a point in local coordinates, and the outward unit normal there. At

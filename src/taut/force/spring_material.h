@@ -23,6 +23,7 @@ struct SpringMaterial {
   double bend_cap = 0.0;
   Compression compression = Compression::none;
   BendModel bend_model = BendModel::linear;
+  bool operator==(const SpringMaterial&) const = default;
 };
 
 }  // namespace taut

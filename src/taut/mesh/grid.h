@@ -15,6 +15,7 @@ struct GridShape {
   Vec3 v = Vec3::UnitZ();
   Index node(Index i, Index j) const { return j * nu + i; }
   Index node_count() const { return nu * nv; }
+  bool operator==(const GridShape&) const = default;
 };
 
 // Nodes as above and two triangles per cell; diagonals alternate from cell to cell so that no direction is preferred.

@@ -21,6 +21,7 @@ struct TimeOptions {
   int frames = 100;          // pictures to write after the first (frame 0 is the start)
   int steps_per_frame = 1;
   IntegratorKind integrator = IntegratorKind::semi_implicit_euler;
+  bool operator==(const TimeOptions&) const = default;
 };
 
 // Which nodes a pin holds. Exactly one way is used.
@@ -28,6 +29,7 @@ struct NodeSelection {
   std::vector<Index> nodes;           // by index
   std::vector<std::string> corners;   // of a grid: "u0v0", "u1v0", "u0v1", "u1v1"
   std::vector<std::string> edges;     // of a grid: "u0", "u1", "v0", "v1"
+  bool operator==(const NodeSelection&) const = default;
 };
 
 // A pin holds nodes still, or carries them along a path: the displacement of the path since time 0 is added to where the nodes started, and
@@ -37,6 +39,7 @@ struct Pin {
   std::vector<KeyFrame> key_frames;
   Vec3 pivot = Vec3::Zero();
   double release = -1.0;              // negative: never
+  bool operator==(const Pin&) const = default;
 };
 
 struct Cloth {
@@ -44,7 +47,7 @@ struct Cloth {
   // Shape: a grid (Provot springs), or a triangle mesh from a file (stretch on edges, bend across edges).
   bool from_file = false;
   GridShape grid;
-  std::filesystem::path mesh;         // OBJ, relative to the scene file
+  std::filesystem::path mesh;         // OBJ; absolute after reading (in a file: relative to it)
   double scale = 1.0;                 // of the file's coordinates; 0.01 for centimetres
   Pose placement;                     // applied after scale
   bool y_up = false;                  // turn Y-up files to Taut's Z-up
@@ -57,17 +60,19 @@ struct Cloth {
   Vec3 velocity = Vec3::Zero();       // m/s at the start
   double jitter = 0.0;                // m: each start coordinate is moved by up to this, from `jitter_seed`
   unsigned jitter_seed = 1;
+  bool operator==(const Cloth&) const = default;
 };
 
 struct Wind {
   Vec3 velocity = Vec3::Zero();       // m/s
   double gust = 0.0;                  // share of velocity: wind(t) = velocity (1 + gust sin(2π gust_frequency t))
   double gust_frequency = 1.0;        // Hz
+  bool operator==(const Wind&) const = default;
 };
 
 struct Scene {
   std::string title;                  // one line, shown in reports and pictures
-  std::filesystem::path folder;       // relative paths start here
+  std::filesystem::path folder;       // of the scene file
   TimeOptions time;
   SolverOptions solver;
   ContactOptions contact;
@@ -75,6 +80,7 @@ struct Scene {
   Wind wind;
   std::vector<Cloth> cloths;
   std::vector<Solid> solids;
+  bool operator==(const Scene&) const = default;
 };
 
 }  // namespace taut

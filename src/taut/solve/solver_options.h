@@ -16,6 +16,7 @@ struct SolverOptions {
   std::string reordering = "vectors";
   // Direct factorisations: keep the ordering and symbolic work while the pattern is the same. The paper (and the benches) analyse in every step.
   bool reuse_analysis = true;
+  bool operator==(const SolverOptions&) const = default;
 };
 
 }  // namespace taut

@@ -1,0 +1,158 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "taut/scene/cloth_estimate.h"
+#include "taut/scene/cloth_shape.h"
+#include "taut/scene/scene_file.h"
+
+namespace taut {
+
+namespace {
+
+struct Doubts {
+  const Scene& scene;
+  std::vector<std::string> found;
+
+  template <class... Args>
+  void add(fmt::format_string<Args...> text, Args&&... args) {
+    found.push_back(fmt::format(text, std::forward<Args>(args)...));
+  }
+};
+
+void doubt_time(Doubts& d) {
+  const double h = d.scene.time.step;
+  if (h > 1.0 / 30)
+    d.add("time.step = {} s is longer than a picture of a film lasts: motion will look damped and contacts late; 1e-3 to 1e-2 is usual", h);
+}
+
+void doubt_wind(Doubts& d) {
+  const auto moved = [](const Cloth& cloth) { return cloth.drag > 0 || cloth.wind_pressure > 0; };
+  if (d.scene.wind.velocity.norm() > 0 && std::none_of(d.scene.cloths.begin(), d.scene.cloths.end(), moved))
+    d.add("the wind moves nothing: give a cloth wind_pressure (0.4 suits light fabric) or drag");
+}
+
+void doubt_fall(Doubts& d, const Cloth& cloth) {
+  if (cloth.pins.empty() && d.scene.solids.empty() && d.scene.gravity.norm() > 0)
+    d.add("cloth '{}' is not pinned and there is no solid to fall on: it will fall for ever; add a [[cloth.pin]] or a [[solid]]",
+          cloth.name);
+}
+
+void doubt_mass(Doubts& d, const Cloth& cloth, const ClothEstimate& e) {
+  const double density = e.mass / e.area;
+  if (density >= 0.05 && density <= 1.0) return;
+  const char* key = cloth.node_mass > 0 ? "node_mass" : "density";
+  const double ratio = (density < 0.05 ? 0.05 : 1.0) / density;
+  d.add("cloth '{}' weighs {:.3g} kg/m², {} than fabrics do (0.05 to 1): for a real one set {} = {:.2g} or so", cloth.name, density,
+        density < 0.05 ? "less" : "more", key, ratio * (cloth.node_mass > 0 ? cloth.node_mass : density));
+}
+
+void doubt_stability(Doubts& d, const Cloth& cloth, const ClothEstimate& e) {
+  const double h = d.scene.time.step;
+  if (d.scene.time.integrator != IntegratorKind::imex || h < e.explicit_step()) return;
+  d.add(
+      "cloth '{}': IMEX takes shear and bend springs explicitly, which is unstable on slack cloth from time.step = {:.3g} s on "
+      "(h² k_shear / m = {:.3g}; here {} s): take a smaller step, a lower k_shear and k_bend, or time.integrator = \"semi_implicit_euler\"",
+      cloth.name, e.explicit_step(), h * h * cloth.material.k_shear / e.node_mass, h);
+}
+
+void doubt_core(Doubts& d, const Cloth& cloth, const ClothEstimate& e) {
+  constexpr double many = 30;
+  // IMEX's matrix has the springs of the core only.
+  if (!d.scene.solver.name.starts_with("core_pcg") || d.scene.time.integrator == IntegratorKind::imex) return;
+  const double iterations = e.core_iterations(d.scene.time, d.scene.solver.tolerance);
+  if (iterations <= many) return;
+  d.add(
+      "cloth '{}': shear and bend springs are strong for its mass and the time step (ρ = {:.3g}), so core_pcg may take up to {:.0f} "
+      "iterations a step: take a smaller time.step, lower k_shear and k_bend, or solver.name = \"cholmod\"",
+      cloth.name, e.rho(d.scene.time), iterations);
+}
+
+void doubt_stretch(Doubts& d, const Cloth& cloth, const ClothEstimate& e) {
+  if (cloth.pins.empty() || cloth.from_file) return;
+  // The topmost spring of a hanging column of n nodes carries all of them.
+  const double n = std::max(cloth.grid.nu, cloth.grid.nv);
+  const double strain = n * e.node_mass * d.scene.gravity.norm() / (cloth.material.k_stretch * e.spacing);
+  if (strain > 0.1)
+    d.add("cloth '{}' will hang like rubber: under its own weight springs stretch by {:.0f} % and more; set k_stretch = {:.2g} or higher",
+          cloth.name, 100 * strain, cloth.material.k_stretch * strain / 0.01);
+}
+
+void doubt_jitter(Doubts& d, const Cloth& cloth, const ClothEstimate& e) {
+  if (cloth.jitter > 0.25 * e.spacing)
+    d.add("cloth '{}': jitter = {} m moves neighbours {:.3g} m apart through one another: set it below {:.2g}", cloth.name, cloth.jitter,
+          e.spacing, 0.1 * e.spacing);
+}
+
+void doubt_start(Doubts& d, const Cloth& cloth, const TriangleMesh& shape, const Solid& solid) {
+  const Pose pose = solid.pose(0.0);
+  std::size_t inside = 0;
+  double deepest = 0.0;
+  for (const Vec3& x : shape.positions) {
+    const double distance = closest_surface(solid, pose.to_local(x)).distance - solid.thickness;
+    if (distance < -d.scene.contact.touch_tolerance) ++inside;
+    deepest = std::min(deepest, distance);
+  }
+  if (inside > 0)
+    d.add("{} of the {} nodes of cloth '{}' start inside solid '{}', up to {:.3g} m deep, and will be thrown out: move one of the two",
+          inside, shape.positions.size(), cloth.name, solid.name, -deepest);
+}
+
+// Nodes stay outside, but a right triangle with legs a between three of them reaches a²/(4 r) into a ball of radius r.
+void doubt_thickness(Doubts& d, const Cloth& cloth, const ClothEstimate& e, const Solid& solid) {
+  if (solid.shape != SolidShape::sphere && solid.shape != SolidShape::cylinder) return;
+  const double cut = e.spacing * e.spacing / (4 * solid.radius);
+  if (solid.thickness < cut)
+    d.add("solid '{}' will show through cloth '{}': triangles cut {:.2g} m into it; set thickness = {:.1g} or more, or use finer cloth",
+          solid.name, cloth.name, cut, 1.5 * cut);
+}
+
+double smallest_extent(const Solid& solid) {
+  if (solid.shape == SolidShape::sphere) return 2 * solid.radius;
+  if (solid.shape == SolidShape::cylinder) return std::min(2 * solid.radius, solid.height);
+  return solid.shape == SolidShape::box ? solid.size.minCoeff() : INFINITY;
+}
+
+double top_speed(const Solid& solid) {
+  if (solid.key_frames.empty()) return solid.velocity.norm();
+  double speed = 0.0;
+  for (std::size_t i = 1; i < solid.key_frames.size(); ++i) {
+    const KeyFrame &a = solid.key_frames[i - 1], &b = solid.key_frames[i];
+    speed = std::max(speed, (b.pose.translation - a.pose.translation).norm() / (b.time - a.time));
+  }
+  return speed;
+}
+
+void doubt_speed(Doubts& d, const Solid& solid) {
+  const double way = top_speed(solid) * d.scene.time.step, allowed = 0.5 * smallest_extent(solid);
+  if (way > allowed)
+    d.add("solid '{}' moves {:.3g} m in a time step and may jump over cloth: make it slower or set time.step = {:.1g} or less", solid.name,
+          way, d.scene.time.step * allowed / way);
+}
+
+}  // namespace
+
+std::vector<std::string> doubtful(const Scene& scene) {
+  Doubts d{scene, {}};
+  doubt_time(d);
+  doubt_wind(d);
+  for (const Solid& solid : scene.solids) doubt_speed(d, solid);
+  for (const Cloth& cloth : scene.cloths) {
+    const TriangleMesh shape = start_shape(cloth);
+    const ClothEstimate e = estimate(cloth, shape);
+    doubt_fall(d, cloth);
+    doubt_mass(d, cloth, e);
+    doubt_stability(d, cloth, e);
+    doubt_core(d, cloth, e);
+    doubt_stretch(d, cloth, e);
+    doubt_jitter(d, cloth, e);
+    for (const Solid& solid : scene.solids) {
+      doubt_start(d, cloth, shape, solid);
+      doubt_thickness(d, cloth, e, solid);
+    }
+  }
+  return d.found;
+}
+
+}  // namespace taut
