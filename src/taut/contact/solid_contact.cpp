@@ -15,8 +15,8 @@ namespace {
 constexpr double pull_share = 1e-9;       // of the largest impulse: a pull below it is rounding
 constexpr double friction_share = 1e-2;   // friction of all nodes together that may be out of date at the fixed point
 constexpr double still = 1e-12;           // m: relative motion in one step below which a node does not slide
-constexpr double steady_cosine = 0.9;     // of the angle that the direction of friction may turn between two passes
 constexpr int most_slides = 3;            // turns from stick to slide in one step
+constexpr int most_renewals = 2;          // passes asked for because a node floats over a curved surface or an edge, in one step
 constexpr int most_releases = 2;          // of one contact in one step
 constexpr std::size_t most_normals = 16;  // of one node; any further ones depend on them
 constexpr Index node_grain = 4096, contact_grain = 256;
@@ -91,9 +91,12 @@ bool SolidContact::update(std::span<const Vec3> x_end, std::span<const Vec3> con
   counts_.added += added;
   if (released + added > 0) group();
   renew_planes(x_end);
-  for (const TouchedNode& touched : touched_) floats |= touched.floats;
+  for (TouchedNode& touched : touched_) floats |= touched.floats && ++touched.renewals <= most_renewals;
   fill_impulses();
   const bool changed = turned || floats || released + added > 0 || change > friction_share * friction;
+  if (getenv("DBG") && counts_.passes >= options_.max_passes - 2)
+    std::printf("   pass %d turned %d floats %d rel %d add %d change %g of %g\n", counts_.passes, turned, floats, released, added, change,
+                friction);
   return changed && counts_.passes < options_.max_passes;
 }
 
@@ -272,11 +275,12 @@ bool SolidContact::slips(const TouchedNode& touched, const Normals& normals, con
   return std::ranges::any_of(of(touched), [&](const Contact& contact) { return slip_of(contact, normals, x_end).norm() > still; });
 }
 
-// Sum over the node's contacts of mu lambda against its motion relative to that solid.
-Vec3 SolidContact::friction_of(const TouchedNode& touched, const Normals& normals, const Vec3& x_end) const {
+// Sum over the node's contacts of mu lambda against its motion relative to that solid. `without` (m) is what friction took from that
+// motion.
+Vec3 SolidContact::friction_of(const TouchedNode& touched, const Normals& normals, const Vec3& x_end, const Vec3& without) const {
   Vec3 friction = Vec3::Zero();
   for (const Contact& contact : of(touched)) {
-    const Vec3 slip = slip_of(contact, normals, x_end);
+    const Vec3 slip = slip_of(contact, normals, x_end) + without;
     const double length = slip.norm();
     if (length > still) friction -= step_of(contact).friction() * std::max(contact.lambda, 0.0) / length * slip;
   }
@@ -287,7 +291,7 @@ void SolidContact::start_friction(std::span<const Vec3> x_predicted) {
   for (TouchedNode& touched : touched_) {
     if (touched.sticking || !has_friction(touched)) continue;
     const Normals normals = normals_of(touched);
-    touched.friction = friction_of(touched, normals, x_predicted[touched.node]);
+    touched.friction = friction_of(touched, normals, x_predicted[touched.node], Vec3::Zero());
     touched.sticking = !slips(touched, normals, x_predicted[touched.node]);
   }
 }
@@ -322,25 +326,29 @@ void SolidContact::judge_stick(TouchedNode& touched, const Vec3& tangential, dou
   touched.turned = true;
   ++touched.slides;
   touched.friction = hold / pull * tangential;
+  touched.last_friction = tangential;
+  touched.last_slip = Vec3::Zero();
 }
 
 void SolidContact::judge_slide(TouchedNode& touched, const Normals& normals, const Vec3& x_end) {
-  Vec3 renewed = friction_of(touched, normals, x_end);
+  const Vec3 slip = slip_of(holder(touched), normals, x_end);
   // Friction that would drive the node instead of slowing it: the node has come to rest within the step.
-  const bool reversed = touched.friction.dot(renewed) < 0.0;
-  const bool rests = !slips(touched, normals, x_end);
-  if (reversed || rests) {
+  if (slip.dot(touched.friction) > 0.0 || !slips(touched, normals, x_end)) {
     touched.sticking = true;
     touched.turned = true;
     touched.friction.setZero();
     return;
   }
-  const double size = renewed.norm(), old_size = touched.friction.norm();
-  // Just before a node comes to rest the direction of slip answers strongly to that of friction: half steps keep it from swinging.
-  if (renewed.dot(touched.friction) < steady_cosine * size * old_size) {
-    const Vec3 middle = renewed / size + touched.friction / old_size;
-    renewed = size / middle.norm() * middle;
+  // Friction opposes the slip that would be there without it. Two passes tell how much slip an impulse takes away; to go by the slip that
+  // is left would diverge for nodes close to rest.
+  if (touched.last_slip) {
+    const double impulse = (touched.friction - touched.last_friction).norm(), answer = (slip - *touched.last_slip).norm();
+    if (impulse > friction_share * touched.friction.norm()) touched.compliance = answer / impulse;
   }
+  const Vec3 without = -touched.compliance * touched.friction;
+  touched.last_friction = touched.friction;
+  touched.last_slip = slip;
+  const Vec3 renewed = friction_of(touched, normals, x_end, without);
   touched.change = (renewed - touched.friction).norm();
   touched.friction = renewed;
 }

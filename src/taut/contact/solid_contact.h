@@ -22,6 +22,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -100,11 +101,15 @@ class SolidContact {
     Index first = 0;
     Index count = 0;
     bool sticking = false;
-    bool turned = false;           // between stick and slide, in this pass
-    bool floats = false;           // its planes must be made anew
-    std::int8_t slides = 0;        // times it turned from stick to slide in this step
-    Vec3 friction = Vec3::Zero();  // N s, of this pass
-    double change = 0.0;           // N s, of friction to the next pass
+    bool turned = false;                // between stick and slide, in this pass
+    bool floats = false;                // its planes must be made anew
+    std::int8_t renewals = 0;           // passes asked for because of that, in this step
+    std::int8_t slides = 0;             // times it turned from stick to slide in this step
+    Vec3 friction = Vec3::Zero();       // N s, of this pass
+    double compliance = 0.0;            // m/(N s): slip that an impulse takes away, as far as known
+    Vec3 last_friction = Vec3::Zero();  // of the pass before
+    std::optional<Vec3> last_slip;      // m
+    double change = 0.0;                // N s, of friction to the next pass
   };
   struct Normals;
 
@@ -127,7 +132,7 @@ class SolidContact {
   void start_friction(std::span<const Vec3> x_predicted);
   Vec3 slip_of(const Contact& contact, const Normals& normals, const Vec3& x_end) const;
   bool slips(const TouchedNode& touched, const Normals& normals, const Vec3& x_end) const;
-  Vec3 friction_of(const TouchedNode& touched, const Normals& normals, const Vec3& x_end) const;
+  Vec3 friction_of(const TouchedNode& touched, const Normals& normals, const Vec3& x_end, const Vec3& without) const;
   void judge(TouchedNode& touched, const Vec3& x_end, const Vec3& impulse, double negligible);
   void judge_stick(TouchedNode& touched, const Vec3& tangential, double negligible);
   void judge_slide(TouchedNode& touched, const Normals& normals, const Vec3& x_end);

@@ -9,6 +9,8 @@ namespace {
 
 // A node on a ball may float by this share of the radius: it is outside, and the next step's plane takes it down again.
 constexpr double floating_share = 1e-4;
+// Cosine between normals beyond which two points count as on opposite sides: a path that only cuts a corner or a cap is no passage.
+constexpr double other_side = -0.5;
 
 double radius_about_origin(const Solid& solid) {
   switch (solid.shape) {
@@ -62,7 +64,8 @@ double SolidStep::share_inside(const Vec3& q0, const Vec3& q1, double depth) con
   if (gap(q1) < depth) return 1.0;
   // Both ends are outside: the gap can only dip below in between if it falls at the start and rises at the end. Bisect its slope.
   const Vec3 path = q1 - q0;
-  if (closest_surface(*solid_, q0).normal.dot(path) >= 0.0 || closest_surface(*solid_, q1).normal.dot(path) <= 0.0) return -1.0;
+  const Vec3 start_normal = closest_surface(*solid_, q0).normal, end_normal = closest_surface(*solid_, q1).normal;
+  if (start_normal.dot(end_normal) > other_side || start_normal.dot(path) >= 0.0 || end_normal.dot(path) <= 0.0) return -1.0;
   double low = 0.0, high = 1.0;
   for (int k = 0; k < 48; ++k) {
     const double middle = 0.5 * (low + high);
@@ -78,8 +81,7 @@ bool SolidStep::meets(const Vec3& x0, const Vec3& x1, double largest_gap) const 
   const Vec3 q1 = end_local(x1);
   if (gap(q1) <= largest_gap) return true;
   const Vec3 q0 = start_local(x0);
-  const double depth = -std::abs(largest_gap);
-  return gap(q0) >= depth && share_inside(q0, q1, depth) >= 0.0;
+  return gap(q0) >= 0.0 && share_inside(q0, q1, -std::abs(largest_gap)) >= 0.0;
 }
 
 Vec3 SolidStep::onto_surface(const Vec3& local) const {
@@ -110,7 +112,7 @@ LandingPlane SolidStep::landing(const Vec3& x1, const Vec3& anchor) const {
   const SurfacePoint nearest = closest_surface(*solid_, q);
   const double nearest_gap = nearest.distance - solid_->thickness;
   const Vec3 entry_normal = closest_surface(*solid_, anchor).normal;
-  const double least_agreement = nearest_gap < 0.0 ? 0.5 : -0.5;
+  const double least_agreement = nearest_gap < 0.0 ? 0.5 : other_side;
   if (nearest.normal.dot(entry_normal) < least_agreement) return {end_rotation_ * entry_normal, entry_normal.dot(q - anchor)};
   return {end_rotation_ * nearest.normal, nearest_gap};
 }

@@ -22,7 +22,8 @@ class SolidStep {
  public:
   SolidStep(const Solid& solid, double t, double h);
 
-  // Does a node that moves from x0 (at t) to x1 (at t + h) end with a gap of at most `largest_gap`, or pass right through?
+  // Does a node that moves from x0 (at t) to x1 (at t + h) end with a gap of at most `largest_gap`, or pass right through
+  // (out on the other side: normals more than 120 degrees apart; a path that cuts a corner does not count)?
   bool meets(const Vec3& x0, const Vec3& x1, double largest_gap) const;
   double start_gap(const Vec3& x) const { return gap(start_local(x)); }
   double end_gap(const Vec3& x) const { return gap(end_local(x)); }
