@@ -35,7 +35,8 @@ Buckled buckled_beam(const SpringParameters& p, double length) {
 
 double beam_energy(const SpringParameters& p, double u) { return 2.0 * p.stiffness * u * u / p.rest_length; }
 
-// The length below which the beam pushes less than the line c_b (L - L0), 0 if the line is always the weaker.
+}  // namespace
+
 double crossing_length(const SpringParameters& p) {
   double low = 0.0, high = p.rest_length;
   const auto beam_is_weaker = [&](double length) { return buckled_beam(p, length).tension >= p.cap * (length - p.rest_length); };
@@ -46,8 +47,6 @@ double crossing_length(const SpringParameters& p) {
   }
   return low;
 }
-
-}  // namespace
 
 double inverse_sinc(double s) {
   if (s >= 1.0) return 0.0;
@@ -86,7 +85,7 @@ double spring_energy(SpringLawKind law, const SpringParameters& p, double length
   if (law != SpringLawKind::choi_ko) return law == SpringLawKind::buckling && stretch < 0.0 ? 0.0 : 0.5 * p.stiffness * stretch * stretch;
   const double line = 0.5 * p.cap * stretch * stretch;
   if (stretch >= 0.0) return line;
-  const double crossing = crossing_length(p);
+  const double crossing = p.crossing >= 0.0 ? p.crossing : crossing_length(p);
   if (length >= crossing) return line;
   const double at_crossing = 0.5 * p.cap * (crossing - p.rest_length) * (crossing - p.rest_length);
   return at_crossing + beam_energy(p, buckled_beam(p, length).u) - beam_energy(p, buckled_beam(p, crossing).u);

@@ -26,7 +26,11 @@ struct SpringParameters {
   double stiffness = 0.0;    // N/m; N·m² for choi_ko
   double damping = 0.0;      // N s/m
   double cap = 0.0;          // c_b, N/m; choi_ko only
+  double crossing = -1.0;    // m: length where line and beam push equally, see crossing_length(); negative: found when needed (slow)
+  bool operator==(const SpringParameters&) const = default;
 };
+// choi_ko: the length below which the beam pushes less than the line c_b (L - L0) would; 0 if it never does.
+double crossing_length(const SpringParameters& p);
 
 // T and T' at length L.
 struct SpringTension {

@@ -66,6 +66,19 @@ void evaluate_range(std::span<const Spring> springs, const ForceRequest& request
 
 }  // namespace
 
+SpringModel::SpringModel(ForceClass force_class, SpringLawKind law, std::vector<Spring> springs)
+    : class_(force_class), law_(law), springs_(std::move(springs)) {
+  if (law_ != SpringLawKind::choi_ko) return;
+  // Found by bisection, so once for all springs that are alike (on a grid: nearly all).
+  SpringParameters last;
+  for (Spring& s : springs_) {
+    SpringParameters own = s.parameters;
+    own.crossing = last.crossing;
+    if (!(own == last)) own.crossing = crossing_length(s.parameters);
+    s.parameters = last = own;
+  }
+}
+
 void SpringModel::connect(ConnectionSink& sink) const {
   for (Index s = 0; s < block_count(); ++s) {
     const auto [i, j, parameters] = springs_[s];
@@ -98,6 +111,20 @@ double SpringModel::energy(std::span<const Vec3> x) const {
 
 Index SpringModel::collapsed(std::span<const Vec3> x) const {
   return static_cast<Index>(std::ranges::count_if(springs_, [&](const Spring& s) { return x[s.i] == x[s.j]; }));
+}
+
+double largest_strain(const SpringModel& model, std::span<const Vec3> x) {
+  struct Largest {
+    double value = -1.0;
+    Largest& operator+=(const Largest& other) { return value = std::max(value, other.value), *this; }
+  };
+  const auto springs = model.springs();
+  return ordered_sum<Largest>(static_cast<Index>(springs.size()), [&](Index begin, Index end) {
+    Largest largest;
+    for (Index s = begin; s < end; ++s)
+      largest += Largest{(x[springs[s].j] - x[springs[s].i]).norm() / springs[s].parameters.rest_length - 1.0};
+    return largest;
+  }).value;
 }
 
 std::vector<double> spring_strains(const SpringModel& model, std::span<const Vec3> x) {

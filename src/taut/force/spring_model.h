@@ -14,8 +14,7 @@ struct Spring {
 
 class SpringModel : public ForceModel {
  public:
-  SpringModel(ForceClass force_class, SpringLawKind law, std::vector<Spring> springs)
-      : class_(force_class), law_(law), springs_(std::move(springs)) {}
+  SpringModel(ForceClass force_class, SpringLawKind law, std::vector<Spring> springs);
 
   ForceClass force_class() const override { return class_; }
   Index block_count() const override { return static_cast<Index>(springs_.size()); }
@@ -36,5 +35,7 @@ class SpringModel : public ForceModel {
 
 // L/L0 - 1 of every spring: 0 at rest, negative when compressed.
 std::vector<double> spring_strains(const SpringModel& model, std::span<const Vec3> x);
+// The largest of them.
+double largest_strain(const SpringModel& model, std::span<const Vec3> x);
 
 }  // namespace taut

@@ -44,15 +44,14 @@ void Stepper::begin(const State& state, double h) {
   assemble_ms_ = timer.milliseconds();
 }
 
-SolveSummary Stepper::solve(const ConstraintSet& constraints, std::span<const Vec3> impulses) {
+SolveSummary Stepper::solve(const ConstraintSet& constraints, std::span<const Vec3> impulses, ConstrainedSolver& solver) {
   assert(state_);
   constraints_ = &constraints;
   rhs_ = b_;
   const double per_impulse = integrator_->rhs_per_impulse(*state_, h_);
   for (std::size_t i = 0; i < impulses.size(); ++i) rhs_[i] += per_impulse * impulses[i];
   integrator_->prescribe(constraints, *state_, h_, z_);
-  SolveSummary summary = solver_->solve(system(), flat(unknown_));
-  guess_ = unknown_;  // the next pass starts from here
+  SolveSummary summary = solver.solve(system(), flat(unknown_));
   integrator_->finish(*state_, h_, unknown_, x_end_, v_end_);
 
   multiply(a_, flat(unknown_), flat(impulse_));

@@ -22,7 +22,9 @@ class Stepper {
   Stepper(Index nodes, std::vector<const ForceModel*> models, ExternalForces external, IntegratorKind integrator, SolverOptions solver);
 
   void begin(const State& state, double h);
-  SolveSummary solve(const ConstraintSet& constraints, std::span<const Vec3> impulses);
+  SolveSummary solve(const ConstraintSet& constraints, std::span<const Vec3> impulses) { return solve(constraints, impulses, *solver_); }
+  // The same with another solver than the step's own.
+  SolveSummary solve(const ConstraintSet& constraints, std::span<const Vec3> impulses, ConstrainedSolver& solver);
   std::span<const Vec3> x_end() const { return x_end_; }
   std::span<const Vec3> v_end() const { return v_end_; }
   std::span<const Vec3> constraint_impulse() const { return impulse_; }

@@ -1,0 +1,141 @@
+#include "taut/scene/simulation.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "taut/base/parallel.h"
+#include "taut/base/timer.h"
+#include "taut/linalg/sparse_cholesky.h"
+#include "taut/solve/core_bound.h"
+
+namespace taut {
+
+namespace {
+
+SolverOptions fallback_options(const SolverOptions& options) {
+  SolverOptions direct = options;
+  direct.name = make_cholesky("cholmod") ? "cholmod" : "eigen_ldlt";
+  return direct;
+}
+
+}  // namespace
+
+Simulation::Simulation(Scene scene)
+    : scene_(std::move(scene)),
+      cloth_(scene_),
+      contact_(scene_.solids, cloth_.nodes(), scene_.contact),
+      stepper_(cloth_.nodes(), cloth_.force_models(), cloth_.external(), scene_.time.integrator, scene_.solver),
+      state_(cloth_.start()),
+      has_core_(scene_.solver.name.starts_with("core_pcg")) {}
+
+void Simulation::restore(State state, ContactState contacts, int steps) {
+  state_ = std::move(state);
+  contact_.restore(std::move(contacts));
+  steps_ = steps;
+}
+
+Status Simulation::step(StepRecord& record) {
+  Timer timer;
+  const double h = scene_.time.step;
+  record = {};
+  record.step = steps_ + 1;
+  // Counted, not summed up: a thousand additions of h would drift from the times that key frames are given at.
+  state_.time = steps_ * h;
+
+  pins_.reset(cloth_.nodes());
+  cloth_.constrain_pins(state_.time, h, state_.x, pins_);
+  stepper_.begin(state_, h);
+  record.assemble_ms = stepper_.assemble_ms();
+  Timer contact_timer;
+  std::vector<Vec3> predicted(state_.x.size());
+  for (std::size_t i = 0; i < predicted.size(); ++i) predicted[i] = state_.x[i] + h * state_.v[i];
+  contact_.begin_step(state_.time, h, state_.x, predicted, pins_);
+  record.contact_ms += contact_timer.milliseconds();
+
+  if (Status status = solve_passes(record); !status.ok()) {
+    status.message = fmt::format("step {} (t = {:.6g} s): {}", record.step, state_.time, status.message);
+    return status;
+  }
+
+  contact_timer.lap();
+  std::vector<Vec3> corrected(stepper_.x_end().begin(), stepper_.x_end().end());
+  record.contact_moved = contact_.finish(corrected);
+  record.deepest_m = contact_.deepest();
+  record.contacts = contact_.contacts();
+  record.contact_ms += contact_timer.milliseconds();
+  if (record.contact_moved > 0) {
+    stepper_.commit(state_, corrected);
+  } else {
+    stepper_.commit(state_);
+  }
+  state_.time = ++steps_ * h;
+  record.time = state_.time;
+  note_state(record);
+  record.step_ms = timer.milliseconds();
+  return {};
+}
+
+Status Simulation::solve_passes(StepRecord& record) {
+  const double rho = has_core_ ? stepper_.remainder_ratio() : 0.0;
+  SolveSummary summary;
+  for (bool again = true; again;) {
+    constraints_ = pins_;
+    Timer contact_timer;
+    contact_.constrain(constraints_);
+    record.contact_ms += contact_timer.milliseconds();
+    summary = solve_or_fall_back(record);
+    note_solve(summary, rho, record);
+    ++record.contact_passes;
+    if (!summary.status.ok()) return summary.status;
+    contact_timer.lap();
+    again = contact_.update(stepper_.x_end(), stepper_.constraint_impulse());
+    record.contact_ms += contact_timer.milliseconds();
+  }
+  record.dof = constraints_.free_dofs();
+  record.constraints = constraints_.constrained_dofs();
+  if (on_solved) on_solved(*this, summary);
+  return {};
+}
+
+SolveSummary Simulation::solve_or_fall_back(StepRecord& record) {
+  SolveSummary summary = stepper_.solve(constraints_, contact_.impulses());
+  if (summary.status.ok()) return summary;
+  const std::string reason = summary.status.message;
+  if (!fallback_) fallback_ = make_solver(fallback_options(scene_.solver));
+  ++record.fallbacks;
+  summary = stepper_.solve(constraints_, contact_.impulses(), *fallback_);
+  if (!summary.status.ok()) summary.status.message = fmt::format("{}: {}; then {}: {}", scene_.solver.name, reason, summary.solver, summary.status.message);
+  return summary;
+}
+
+void Simulation::note_solve(const SolveSummary& summary, double rho, StepRecord& record) const {
+  record.solver = summary.solver;
+  record.iterations = std::max(record.iterations, summary.iterations);
+  record.relative_residual = std::max(record.relative_residual, summary.relative_residual);
+  record.order_ms += summary.order_ms;
+  record.factor_ms += summary.factor_ms;
+  record.solve_ms += summary.solve_ms + summary.reduce_ms;
+  if (has_core_ && summary.solver.starts_with("core_pcg")) {
+    record.core_springs = stepper_.core_springs();
+    record.bound_iterations = std::max(record.bound_iterations, core_iteration_bound(rho, summary.start_value, scene_.solver.tolerance));
+  }
+}
+
+void Simulation::note_state(StepRecord& record) const {
+  record.nodes = cloth_.nodes();
+  const auto masses = cloth_.external().masses();
+  record.kinetic_J = ordered_sum(cloth_.nodes(), [&](Index begin, Index end) {
+    double sum = 0.0;
+    for (Index i = begin; i < end; ++i) sum += 0.5 * masses[i] * state_.v[i].squaredNorm();
+    return sum;
+  });
+  for (const auto& model : cloth_.springs()) {
+    record.elastic_J += model->energy(state_.x);
+    record.collapsed_springs += model->collapsed(state_.x);
+  }
+  for (const SpringModel* model : cloth_.stretch_springs()) record.max_stretch = std::max(record.max_stretch, largest_strain(*model, state_.x));
+}
+
+}  // namespace taut

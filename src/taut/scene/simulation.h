@@ -1,0 +1,75 @@
+#pragma once
+// A scene in motion: the loop that joins contact and the step.
+//
+//   step():  pins and contact give constraints -> assemble -> [solve -> contact judges the constraint forces] until the contacts agree -> commit
+//
+// A solve that fails is repeated by a direct method (counted in `fallbacks`, named in the record); if that fails too, step() returns a bad status
+// with the step and time in its message and the state stays that of the step before.
+
+#include <functional>
+
+#include "taut/contact/solid_contact.h"
+#include "taut/scene/cloth_model.h"
+#include "taut/step/stepper.h"
+
+namespace taut {
+
+// One row of stats.csv. Times in ms; of several contact passes, times are sums and the solver's numbers are the largest.
+struct StepRecord {
+  int step = 0;
+  double time = 0.0;  // s, at the end of the step
+  Index nodes = 0, dof = 0, constraints = 0;
+  int contacts = 0;
+  std::string solver;
+  Index core_springs = 0;  // 0 when the solver has no core
+  int iterations = 0;
+  double relative_residual = 0.0;
+  double assemble_ms = 0.0, order_ms = 0.0, factor_ms = 0.0, solve_ms = 0.0, contact_ms = 0.0, step_ms = 0.0;
+  double kinetic_J = 0.0, elastic_J = 0.0;
+  double max_stretch = 0.0;      // largest L/L0 - 1 of all stretch springs
+  int bound_iterations = -1;     // -1: the solver has no bound
+  int fallbacks = 0;
+  Index collapsed_springs = 0;
+  int contact_passes = 0;
+  int contact_moved = 0;         // nodes moved out of solids after the last pass
+  double deepest_m = 0.0;        // how deep the deepest of them was
+};
+
+class Simulation {
+ public:
+  // Throws InputError when the scene's meshes or names are bad.
+  explicit Simulation(Scene scene);
+
+  Status step(StepRecord& record);
+
+  const Scene& scene() const { return scene_; }
+  const ClothModel& cloth() const { return cloth_; }
+  const State& state() const { return state_; }
+  int steps_done() const { return steps_; }
+  SolidContact& contact() { return contact_; }
+  Stepper& stepper() { return stepper_; }
+  const ConstraintSet& constraints() const { return constraints_; }
+
+  // Goes on from a checkpoint.
+  void restore(State state, ContactState contacts, int steps);
+  // Called after the last pass of a step, before it is committed: the solved system is in stepper().system(). For dumps and benches.
+  std::function<void(Simulation&, const SolveSummary&)> on_solved;
+
+ private:
+  Status solve_passes(StepRecord& record);
+  SolveSummary solve_or_fall_back(StepRecord& record);
+  void note_solve(const SolveSummary& summary, double rho, StepRecord& record) const;
+  void note_state(StepRecord& record) const;
+
+  Scene scene_;
+  ClothModel cloth_;
+  SolidContact contact_;
+  Stepper stepper_;
+  std::unique_ptr<ConstrainedSolver> fallback_;
+  ConstraintSet pins_, constraints_;
+  State state_;
+  int steps_ = 0;
+  bool has_core_;
+};
+
+}  // namespace taut
