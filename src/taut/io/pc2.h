@@ -1,0 +1,42 @@
+#pragma once
+// PC2 point caches: the positions of a mesh's vertices over time, for Blender, Maya, Houdini and others; the mesh itself goes into an OBJ.
+//
+//   header, 32 bytes little-endian:  "POINTCACHE2\0", int32 version = 1, int32 points, float start_frame, float sample_rate, int32 samples
+//   then for each sample             points x 3 float32: x y z of each vertex in the mesh's order, m
+//
+// sample_rate = frames between two samples (1: a sample a frame). Source: the 3ds Max PC2 format as Blender's Mesh Cache reads it.
+//
+// Samples go to a temporary file beside `path` as they come; finish() fills in their number and renames it, so a reader never sees half a
+// cache. A writer that is destroyed before finish() removes the temporary file. Throws InputError naming the file when it cannot be
+// written.
+
+#include <filesystem>
+#include <fstream>
+#include <span>
+
+#include "taut/base/types.h"
+
+namespace taut {
+
+class Pc2Writer {
+ public:
+  Pc2Writer(const std::filesystem::path& path, Index points, float start_frame = 0, float sample_rate = 1);
+  ~Pc2Writer();
+  Pc2Writer(const Pc2Writer&) = delete;
+  Pc2Writer& operator=(const Pc2Writer&) = delete;
+
+  // Asserts that there are `points` positions.
+  void add_sample(std::span<const Vec3> positions);
+  Index samples() const { return samples_; }
+  void finish();
+
+ private:
+  [[noreturn]] void fail() const;
+
+  std::filesystem::path path_, temporary_;
+  std::ofstream stream_;
+  Index points_;
+  Index samples_ = 0;
+};
+
+}  // namespace taut
