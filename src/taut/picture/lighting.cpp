@@ -5,14 +5,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "taut/picture/sampling.h"
-
 namespace taut::detail {
 
 namespace {
 
 constexpr float two_pi = 2.0F * std::numbers::pi_v<float>;
-constexpr std::uint32_t key_dimension = 11, sky_dimension = 12;
 constexpr float gloss_exponent = 48.0F;
 constexpr float shoulder = 0.8F;
 
@@ -60,24 +57,22 @@ void make_frame(const Vec3f& n, Vec3f& x, Vec3f& y) {
   y = n.cross(x);
 }
 
-void light_points(const RayScene& scene, const Lights& lights, const SampleLanes& samples, const Packet<ShadePoint>& points,
-                  const Packet<bool>& active, const Packet<Vec3f>& view, Packet<Vec3f>& colours) {
+void light_points(const RayScene& scene, const Lights& lights, const PixelPattern& pattern, std::uint32_t first,
+                  const Packet<ShadePoint>& points, const Packet<bool>& active, const Packet<Vec3f>& view, Packet<Vec3f>& colours) {
   Rays key_rays, sky_rays;
   for (std::size_t i = 0; i < packet_size; ++i) {
     key_rays.active[i] = sky_rays.active[i] = active[i];
     if (!active[i]) continue;
     const ShadePoint& p = points[i];
-    const auto index = samples.first + static_cast<std::uint32_t>(i);
-    key_rays.direction[i] =
-        disc_point(lights.key, lights.key_x, lights.key_y, lights.key_radius, sample_2d(index, hash_of(samples.pixel_seed, key_dimension)))
-            .normalized();
+    const auto index = first + static_cast<std::uint32_t>(i);
+    key_rays.direction[i] = disc_point(lights.key, lights.key_x, lights.key_y, lights.key_radius, pattern.key.at(index)).normalized();
     const float side = p.facing.dot(key_rays.direction[i]) > 0.0F ? 1.0F : -1.0F;
     key_rays.origin[i] = p.position + side * lights.offset * p.facing;
 
     // A point of the unit disc lifted onto the hemisphere has the density cosine / pi.
     Vec3f x, y;
     make_frame(p.normal, x, y);
-    const Vec3f flat = disc_point(Vec3f::Zero(), x, y, 1.0F, sample_2d(index, hash_of(samples.pixel_seed, sky_dimension)));
+    const Vec3f flat = disc_point(Vec3f::Zero(), x, y, 1.0F, pattern.sky.at(index));
     sky_rays.direction[i] = flat + std::sqrt(std::max(0.0F, 1.0F - flat.squaredNorm())) * p.normal;
     sky_rays.origin[i] = p.position + lights.offset * p.facing;
   }

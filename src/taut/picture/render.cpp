@@ -9,7 +9,6 @@
 #include "taut/base/error.h"
 #include "taut/base/parallel.h"
 #include "taut/picture/lighting.h"
-#include "taut/picture/sampling.h"
 
 namespace taut {
 
@@ -20,12 +19,11 @@ using detail::Vec3f;
 template <class T>
 using Packet = detail::Packet<T>;
 
-constexpr std::uint32_t pixel_dimension = 10;
 constexpr double ray_offset = 1e-5;         // of the distance from eye to target
 constexpr double ground_fade_begin = 0.35;  // of that distance
 constexpr double ground_fade_end = 1.3;
-constexpr double key_azimuth_deg = 42.0;  // to the left of the camera, seen from the target
-constexpr double key_elevation_deg = 48.0;
+constexpr double key_azimuth_deg = 58.0;  // to the left of the camera, seen from the target
+constexpr double key_elevation_deg = 44.0;
 
 double radians(double degrees) { return degrees * std::numbers::pi / 180.0; }
 
@@ -53,6 +51,23 @@ Vec3 default_light(const CameraAxes& axes) {
   return std::cos(elevation) * turned + std::sin(elevation) * Vec3::UnitZ();
 }
 
+// The samples of one pixel, linear.
+struct PixelSum {
+  Vec3f colour = Vec3f::Zero();
+  Vec3f lowest = Vec3f::Constant(std::numeric_limits<float>::infinity());
+  Vec3f highest = Vec3f::Constant(-std::numeric_limits<float>::infinity());
+  int count = 0;
+
+  void add(const Vec3f& sample) {
+    colour += sample;
+    lowest = lowest.cwiseMin(sample);
+    highest = highest.cwiseMax(sample);
+    ++count;
+  }
+  // The samples differ by no more than the colours of an open sky make them.
+  bool settled() const { return ((highest - lowest).array() < 0.1F * highest.array() + 0.005F).all(); }
+};
+
 class Renderer {
  public:
   Renderer(std::span<const Surface> surfaces, const Camera& camera, const RenderOptions& options);
@@ -63,7 +78,9 @@ class Renderer {
   void set_ground(const Camera& camera, double distance);
   void draw_row(int y, std::uint8_t* rgb) const;
   Vec3f pixel_colour(int x, int y) const;
-  Vec3f packet_sum(int x, int y, const detail::SampleLanes& samples, int count) const;
+  // Adds the pixel's next `count` samples; each ends as background, or as a point of a surface or the ground over it.
+  void add_packet(int x, int y, const detail::PixelPattern& pattern, int count, PixelSum& sum) const;
+  std::optional<detail::ShadePoint> seen_point(const Vec3f& direction, const detail::Hits& hits, std::size_t lane) const;
   Vec3f ray_direction(float x, float y) const;
   Vec3f background(float y) const;
 
@@ -130,15 +147,14 @@ void Renderer::draw_row(int y, std::uint8_t* rgb) const {
   }
 }
 
+// Most pixels are settled by their first packet: further samples go only where those differ (outlines, soft shadows, creases).
 Vec3f Renderer::pixel_colour(int x, int y) const {
-  detail::SampleLanes samples;
-  samples.pixel_seed = detail::hash_of(detail::hash_of(0, static_cast<std::uint32_t>(x)), static_cast<std::uint32_t>(y));
-  Vec3f sum = Vec3f::Zero();
-  for (int first = 0; first < options_.samples; first += packet_size) {
-    samples.first = static_cast<std::uint32_t>(first);
-    sum += packet_sum(x, y, samples, std::min(packet_size, options_.samples - first));
-  }
-  return sum / static_cast<float>(options_.samples);
+  const detail::PixelPattern pattern(x, y, options_.samples);
+  PixelSum sum;
+  do {
+    add_packet(x, y, pattern, std::min(packet_size, options_.samples - sum.count), sum);
+  } while (sum.count < options_.samples && !sum.settled());
+  return sum.colour / static_cast<float>(sum.count);
 }
 
 Vec3f Renderer::ray_direction(float x, float y) const {
@@ -152,13 +168,20 @@ Vec3f Renderer::background(float y) const {
   return top_ + s * (bottom_ - top_);
 }
 
-// Lanes up to `count` are samples; each ends as background, or as a point of a surface or the ground over it.
-Vec3f Renderer::packet_sum(int x, int y, const detail::SampleLanes& samples, int count) const {
+std::optional<detail::ShadePoint> Renderer::seen_point(const Vec3f& direction, const detail::Hits& hits, std::size_t lane) const {
+  const float ground_distance = ground_ ? ground_->distance(eye_, direction) : std::numeric_limits<float>::infinity();
+  if (hits.distance[lane] < ground_distance) return lookup_.at(eye_, direction, hits, lane);
+  if (std::isfinite(ground_distance)) return ground_->at(eye_ + ground_distance * direction);
+  return std::nullopt;
+}
+
+void Renderer::add_packet(int x, int y, const detail::PixelPattern& pattern, int count, PixelSum& sum) const {
+  const auto lanes = static_cast<std::size_t>(count);
+  const auto first = static_cast<std::uint32_t>(sum.count);
   detail::Rays rays;
   Packet<float> rows;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-    const auto jitter =
-        detail::sample_2d(samples.first + static_cast<std::uint32_t>(i), detail::hash_of(samples.pixel_seed, pixel_dimension));
+  for (std::size_t i = 0; i < lanes; ++i) {
+    const auto jitter = pattern.place.at(first + static_cast<std::uint32_t>(i));
     rows[i] = static_cast<float>(y) + jitter[1];
     rays.active[i] = true;
     rays.origin[i] = eye_;
@@ -169,24 +192,17 @@ Vec3f Renderer::packet_sum(int x, int y, const detail::SampleLanes& samples, int
 
   Packet<detail::ShadePoint> points;
   Packet<bool> lit{};
-  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-    const float ground_distance = ground_ ? ground_->distance(eye_, rays.direction[i]) : std::numeric_limits<float>::infinity();
-    std::optional<detail::ShadePoint> point;
-    if (hits.distance[i] < ground_distance)
-      point = lookup_.at(eye_, rays.direction[i], hits, i);
-    else if (std::isfinite(ground_distance))
-      point = ground_->at(eye_ + ground_distance * rays.direction[i]);
+  for (std::size_t i = 0; i < lanes; ++i) {
+    const std::optional<detail::ShadePoint> point = seen_point(rays.direction[i], hits, i);
     lit[i] = point && point->cover > 0.0F;
     if (lit[i]) points[i] = *point;
   }
   Packet<Vec3f> colours;
-  if (lit != Packet<bool>{}) detail::light_points(scene_, lights_, samples, points, lit, rays.direction, colours);
-  Vec3f sum = Vec3f::Zero();
-  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+  if (lit != Packet<bool>{}) detail::light_points(scene_, lights_, pattern, first, points, lit, rays.direction, colours);
+  for (std::size_t i = 0; i < lanes; ++i) {
     const Vec3f behind = background(rows[i]);
-    sum += lit[i] ? Vec3f(behind + points[i].cover * (colours[i] - behind)) : behind;
+    sum.add(lit[i] ? Vec3f(behind + points[i].cover * (colours[i] - behind)) : behind);
   }
-  return sum;
 }
 
 }  // namespace

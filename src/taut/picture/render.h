@@ -28,7 +28,7 @@ struct RenderOptions {
   int width = 1280, height = 720;  // pixels, each 1 to 16384
   int samples = 16;                // per pixel, 1 to 1024; powers of two are best
   std::optional<double> ground;    // m: height z of a ground that receives shadows; fades out away from the camera's target
-  Colour ground_colour = Colour(0.80, 0.79, 0.77);
+  Colour ground_colour = Colour(0.86, 0.86, 0.85);
   double ground_line_spacing = 0.0;  // m between thin lines on the ground through the world's origin; 0 draws none
   Colour background_top = Colour(0.80, 0.85, 0.91);
   Colour background_bottom = Colour(0.95, 0.95, 0.94);

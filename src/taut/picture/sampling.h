@@ -1,11 +1,16 @@
 #pragma once
-// Random-looking but fixed sample points: hash-scrambled Sobol points in two dimensions.
+// Random-looking but fixed sample points of a picture: one scrambled Sobol sequence in two dimensions for each use, spread over the pixels.
 //
-// The first 2^k points of one seed form a (0, 2)-net: each dyadic box of area 2^-k holds one point, so few samples suffice. The seed is
-// made from the pixel, so a pixel's samples depend on nothing else: neither on the order of work nor on the number of threads. Source: B.
-// Burley, "Practical Hash-based Owen Scrambling", JCGT 9(4), 2020, listings 1 to 4.
+// Pixels take consecutive runs of the sequence along a Z-order curve whose nested squares are visited in a scrambled order. A pixel's 2^k
+// points form a (0, 2)-net (each dyadic box of area 2^-k holds one), and so do those of 2 x 2, 4 x 4, ... neighbours together: the error
+// left differs from pixel to pixel as much as it can, and the eye averages it away. A sample depends on the pixel's coordinates and its
+// number alone: neither on the order of work nor on the number of threads.
+//
+// Sources: A. Ahmed, P. Wonka, "Screen-Space Blue-Noise Diffusion of Monte Carlo Sampling Error via Hierarchical Ordering of Pixels",
+// ACM TOG 39(6), 2020; scrambling: B. Burley, "Practical Hash-based Owen Scrambling", JCGT 9(4), 2020.
 
 #include <array>
+#include <bit>
 #include <cstdint>
 
 namespace taut::detail {
@@ -17,8 +22,6 @@ constexpr std::uint32_t mix_bits(std::uint32_t x) {
   return x ^ (x >> 16);
 }
 
-constexpr std::uint32_t hash_of(std::uint32_t seed, std::uint32_t value) { return mix_bits(seed ^ mix_bits(value + 0x9e3779b9U)); }
-
 constexpr std::uint32_t reverse_bits(std::uint32_t x) {
   x = ((x >> 1) & 0x55555555U) | ((x & 0x55555555U) << 1);
   x = ((x >> 2) & 0x33333333U) | ((x & 0x33333333U) << 2);
@@ -27,30 +30,54 @@ constexpr std::uint32_t reverse_bits(std::uint32_t x) {
   return (x >> 16) | (x << 16);
 }
 
-// Owen's nested uniform scrambling: each bit is flipped by a hash of the bits above it.
-constexpr std::uint32_t owen_scramble(std::uint32_t x, std::uint32_t seed) {
-  x = reverse_bits(x);
+// Owen's nested uniform scrambling of the number whose bits are x reversed: each bit is flipped by a hash of the bits below it.
+constexpr std::uint32_t scramble_reversed(std::uint32_t x, std::uint32_t seed) {
   x += seed;
   x ^= x * 0x6c50b47cU;
   x ^= x * 0xb82f1e52U;
   x ^= x * 0xc7afe638U;
   x ^= x * 0x8d22f6e6U;
-  return reverse_bits(x);
+  return x;
 }
 
-constexpr std::uint32_t sobol_second_dimension(std::uint32_t index) {
+constexpr std::uint32_t scramble(std::uint32_t x, std::uint32_t seed) { return reverse_bits(scramble_reversed(reverse_bits(x), seed)); }
+
+// The second Sobol dimension; the first is reverse_bits(index). Both are linear: f(a ^ b) = f(a) ^ f(b).
+constexpr std::uint32_t sobol_second(std::uint32_t index) {
   std::uint32_t result = 0;
   for (std::uint32_t direction = 1U << 31; index != 0; index >>= 1, direction ^= direction >> 1)
     if (index & 1U) result ^= direction;
   return result;
 }
 
-// Sample `index` of the sequence `seed`: two numbers in [0, 1).
-constexpr std::array<float, 2> sample_2d(std::uint32_t index, std::uint32_t seed) {
-  const std::uint32_t shuffled = owen_scramble(index, seed);
-  const std::uint32_t x = owen_scramble(reverse_bits(shuffled), hash_of(seed, 1));
-  const std::uint32_t y = owen_scramble(sobol_second_dimension(shuffled), hash_of(seed, 2));
-  return {static_cast<float>(x >> 8) * 0x1p-24F, static_cast<float>(y >> 8) * 0x1p-24F};
+// x in the even bits and y in the odd ones; 16 bits each.
+constexpr std::uint32_t z_order(std::uint32_t x, std::uint32_t y) {
+  const auto spread = [](std::uint32_t v) {
+    v = (v | v << 8) & 0x00ff00ffU;
+    v = (v | v << 4) & 0x0f0f0f0fU;
+    v = (v | v << 2) & 0x33333333U;
+    return (v | v << 1) & 0x55555555U;
+  };
+  return spread(x) | spread(y) << 1;
 }
+
+// The samples of one pixel for one use (`seed`).
+class PixelSamples {
+ public:
+  constexpr PixelSamples(std::uint32_t x, std::uint32_t y, std::uint32_t samples_per_pixel, std::uint32_t seed)
+      : seed_(mix_bits(seed)),
+        first_(scramble(z_order(x, y), seed_) << std::bit_width(samples_per_pixel - 1)),
+        second_(sobol_second(first_)) {}
+
+  // Sample `index` < samples_per_pixel: two numbers in [0, 1).
+  constexpr std::array<float, 2> at(std::uint32_t index) const {
+    const std::uint32_t u = reverse_bits(scramble_reversed(first_ | index, seed_ ^ 0x68bc21ebU));
+    const std::uint32_t v = scramble(second_ ^ sobol_second(index), seed_ ^ 0x02e5be93U);
+    return {static_cast<float>(u >> 8) * 0x1p-24F, static_cast<float>(v >> 8) * 0x1p-24F};
+  }
+
+ private:
+  std::uint32_t seed_, first_, second_;
+};
 
 }  // namespace taut::detail

@@ -30,7 +30,7 @@ struct Surface {
   std::span<const Triangle> triangles;
   std::span<const Vec2> texcoords;
   std::span<const Vec3> normals;
-  Colour front = Colour(0.16, 0.42, 0.70);
+  Colour front = Colour(0.22, 0.47, 0.74);
   Colour back = Colour(0.93, 0.64, 0.27);
   Pattern pattern = Pattern::none;
   Vec2 pattern_cells = Vec2(10, 10);  // cells per unit of u and v
