@@ -65,25 +65,6 @@ TEST(Render, KeyLightFollowsTheCosineLaw) {
   EXPECT_NEAR(slanting / upright, 0.5, 0.02);
 }
 
-// The share of the sky (weighted by the cosine) that a sphere of radius r covers from a distance h right above is (r/h)².
-TEST(Render, AmbientOcclusionUnderASphereIsTheFormFactor) {
-  const Camera camera{Vec3(0, -3, 0.4), Vec3::Zero(), Vec3::UnitZ(), 20.0};
-  RenderOptions options = small_picture();
-  options.light_direction = from_below;
-  options.samples = 256;
-  options.ground = 0.0;
-  options.ground_colour = Colour::Constant(0.5);
-  const auto ground_under = [&](std::span<const Surface> surfaces) {
-    return brightness_at(render(surfaces, camera, options), camera, Vec3::Zero(), 2);
-  };
-  const SolidMesh ball = make_sphere_mesh(0.3, moved(Vec3(0, 0, 0.6)));
-  const SolidMesh ceiling = make_quad_mesh(1e3, 1e3, moved(Vec3(0, 0, 0.5)));
-  const Surface ball_surface = matt(ball, Colour::Constant(0.5)), ceiling_surface = matt(ceiling, Colour::Constant(0.5));
-  const double open = ground_under({}), closed = ground_under({&ceiling_surface, 1}), partly = ground_under({&ball_surface, 1});
-  EXPECT_GT(open, 1.5 * closed);
-  EXPECT_NEAR((open - partly) / (open - closed), 0.25, 0.02);
-}
-
 TEST(Render, ShadowOnTheGroundIsWhereTheLightSaysAndDarker) {
   const SolidMesh ball = make_sphere_mesh(0.3, moved(Vec3(0, 0, 1.2)));
   const Surface surface = matt(ball, Colour::Constant(0.7));

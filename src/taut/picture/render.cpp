@@ -147,13 +147,13 @@ void Renderer::draw_row(int y, std::uint8_t* rgb) const {
   }
 }
 
-// Most pixels are settled by their first packet: further samples go only where those differ (outlines, soft shadows, creases).
+// Most pixels are settled by half of their samples: the others go only where those differ (outlines, soft shadows, creases).
 Vec3f Renderer::pixel_colour(int x, int y) const {
   const detail::PixelPattern pattern(x, y, options_.samples);
   PixelSum sum;
   do {
     add_packet(x, y, pattern, std::min(packet_size, options_.samples - sum.count), sum);
-  } while (sum.count < options_.samples && !sum.settled());
+  } while (sum.count < options_.samples && !(2 * sum.count >= options_.samples && sum.settled()));
   return sum.colour / static_cast<float>(sum.count);
 }
 

@@ -12,8 +12,9 @@
 // Where the key light falls on the far side, its share `translucency` comes through. Light above 0.8 is rolled off smoothly and never
 // clips.
 //
-// Each pixel takes `samples` stratified samples made from its own coordinates: the picture has the same bits for any thread count and from
-// run to run on one instruction set. The same camera gives the same lights and ground in every frame of a film.
+// Each pixel takes `samples` stratified samples made from its own coordinates, or half of them where those agree: the picture has the same
+// bits for any thread count and from run to run on one instruction set. The same camera gives the same lights and ground in every frame of
+// a film.
 
 #include <optional>
 #include <span>
