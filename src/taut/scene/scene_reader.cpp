@@ -23,15 +23,17 @@ toml::table parse(const std::string& text, const std::string& path) {
   }
 }
 
-// "in [time]", "at the top of the file, ...": where else this key exists; "" when nowhere.
+// Where else this key exists: "it belongs in [time]", "write [[cloth.pin]]"; "" when nowhere.
 std::string home_of(const std::string& key) {
   std::string homes;
-  for (const CatalogueTable& table : schema_catalogue())
+  for (const CatalogueTable& table : schema_catalogue()) {
+    if (table.path == key || table.path.ends_with("." + key)) return "write " + table.heading();
     for (const CatalogueKey& known : table.keys) {
       if (known.name != key) continue;
-      if (table.path.empty()) return "at the top of the file, before the first [table]";
-      homes += (homes.empty() ? "in " : " or ") + table.heading();
+      if (table.path.empty()) return "it belongs at the top of the file, before the first [table]";
+      homes += (homes.empty() ? "it belongs in " : " or ") + table.heading();
     }
+  }
   return homes;
 }
 

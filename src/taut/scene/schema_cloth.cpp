@@ -87,9 +87,12 @@ void describe_pin(SchemaVisitor& v, const Cloth& cloth, Pin& pin) {
   check_nodes(v, cloth, pin.where.nodes);
   constexpr const char* grid_only = "a cloth with grid (on a mesh pin nodes by index)";
   v.choose_some("corners", pin.where.corners, corner_names,
-                {.doc = "some of", .unset = pin.where.corners.empty(), .applies = !cloth.from_file, .only_for = grid_only});
+                {.doc = "of the grid: u0v0 is node (0, 0), u1v0 is (nu-1, 0), u0v1 is (0, nv-1), u1v1 the last",
+                 .unset = pin.where.corners.empty(),
+                 .applies = !cloth.from_file,
+                 .only_for = grid_only});
   v.choose_some("edges", pin.where.edges, edge_names,
-                {.doc = "all nodes of some of: u0 is the edge with i = 0, u1 that with i = nu-1, v0 that with j = 0, v1 that with j = nv-1",
+                {.doc = "all nodes on edges of the grid: i = 0 is u0, i = nu-1 is u1, j = 0 is v0, j = nv-1 is v1",
                  .unset = pin.where.edges.empty(),
                  .applies = !cloth.from_file,
                  .only_for = grid_only});

@@ -15,7 +15,7 @@ void describe_solid(SchemaVisitor& v, Solid& solid) {
       {.doc = "sphere: centre at the origin; plane: solid below, normal +z; cylinder: axis z, flat caps; box: edges along the axes; all "
               "centred, then moved by `translation` and `rotation`",
        .required = true});
-  const bool sphere = solid.shape == SolidShape::sphere, plane = solid.shape == SolidShape::plane;
+  const bool sphere = solid.shape == SolidShape::sphere;
   const bool cylinder = solid.shape == SolidShape::cylinder, box = solid.shape == SolidShape::box;
   v.number("radius", solid.radius,
            {.doc = "radius",
@@ -51,11 +51,9 @@ void describe_solid(SchemaVisitor& v, Solid& solid) {
   constexpr const char* without_key_frames = "a solid without key_frames";
   describe_pose(v, solid.initial, constant, without_key_frames);
   v.vector("velocity", solid.velocity, {.doc = "constant", .unit = "m/s", .applies = constant, .only_for = without_key_frames});
-  v.vector("angular_velocity", solid.angular_velocity,
-           {.doc = "constant, about the solid's own origin, world axes",
-            .unit = "rad/s",
-            .applies = constant && !plane,
-            .only_for = "a solid without key_frames that is not a plane"});
+  v.vector(
+      "angular_velocity", solid.angular_velocity,
+      {.doc = "constant, about the solid's own origin, world axes", .unit = "rad/s", .applies = constant, .only_for = without_key_frames});
   describe_key_frames(
       v, solid.key_frames,
       "Where the solid is at some times, instead of `translation`, `rotation` and velocities: linear in between, held before "

@@ -33,10 +33,10 @@ std::string range_text(const KeyInfo& info) {
   if (!low && !high) return {};
   std::string text;
   if (low && high && !info.above_min) {
-    text = fmt::format("from {} to {}", info.min, info.max);
+    text = fmt::format("from {:g} to {:g}", info.min, info.max);
   } else {
-    if (low) text = fmt::format("{} {}", info.above_min ? "above" : "at least", info.min);
-    if (high) text += fmt::format("{}at most {}", low ? ", " : "", info.max);
+    if (low) text = fmt::format("{} {:g}", info.above_min ? "above" : "at least", info.min);
+    if (high) text += fmt::format("{}at most {:g}", low ? ", " : "", info.max);
   }
   return with_unit(text, info);
 }
@@ -61,13 +61,16 @@ void TomlReader::wrong_type(const toml::node& node, const char* key, const std::
 const toml::node* TomlReader::take(const char* key, const KeyInfo& info) {
   level().known.push_back(key);
   const auto entry = level().table->find(std::string_view(key));
-  if (entry == level().table->end()) {
-    if (info.required && info.applies)
-      complain(*level().table, key, " is missing; expected here" + (*info.doc ? std::string(": ") + info.doc : std::string()) + hint(info));
-    return nullptr;
-  }
-  if (info.applies) return &entry->second;
-  complaints_.add(entry->first.source(), level().path + key + " is only for " + info.only_for + ": remove it");
+  const bool present = entry != level().table->end();
+  if (present && info.applies) return &entry->second;
+  // Whether a key applies depends on other keys: when one of those is wrong already, this complaint would only mislead.
+  const bool in_doubt = *info.only_for && complaints_.size() > level().earlier_complaints;
+  if (in_doubt) return nullptr;
+  if (present)
+    complaints_.add(entry->first.source(), fmt::format("{}{} is only for {}: remove it", level().path, key, info.only_for));
+  else if (info.required && info.applies)
+    complain(*level().table, key,
+             fmt::format(" is missing; expected here: {}{}{}{}", info.doc, *info.unit ? ", in " : "", info.unit, hint(info)));
   return nullptr;
 }
 
@@ -110,7 +113,7 @@ bool TomlReader::to_integer(const char* key, const toml::node& node, int& value,
 bool TomlReader::to_numbers(const char* key, const toml::node& node, std::span<double> values, const KeyInfo& info) {
   const toml::array* array = node.as_array();
   if (!array || array->size() != values.size()) {
-    wrong_type(node, key, with_unit(fmt::format("an array of {} numbers", values.size()), info), info);
+    wrong_type(node, key, fmt::format("an array of {} numbers{}{}", values.size(), *info.unit ? ", in " : "", info.unit), info);
     return false;
   }
   for (std::size_t i = 0; i < values.size(); ++i)

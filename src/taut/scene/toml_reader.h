@@ -13,7 +13,7 @@ namespace taut {
 
 class TomlReader final : public SchemaVisitor {
  public:
-  // `home`: where a key that is unknown in its table belongs, "" when nowhere.
+  // `home`: advice where a key that is unknown in its table belongs, "" when nowhere.
   using Home = std::function<std::string(const std::string& key)>;
   TomlReader(const toml::table& document, std::filesystem::path folder, Home home, Complaints& complaints);
   // After the walk: complains about the top-level keys that were not described.

@@ -46,7 +46,7 @@ void TomlReader::complain_of_unknown_keys() {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
     const std::string near = nearest_name(name, known), home = home_(name);
     std::string advice = "; the keys here are " + fmt::format("{}", fmt::join(known, ", "));
-    if (!home.empty()) advice = "; it belongs " + home;
+    if (!home.empty()) advice = "; " + home;
     if (!near.empty()) advice = "; did you mean '" + near + "'?";
     const std::string where = level().path.empty() ? "at the top level" : "in " + level().path.substr(0, level().path.size() - 1);
     complaints_.add(key.source(), "unknown key '" + name + "' " + where + advice);
