@@ -5,6 +5,7 @@
 
 #include "io/temporary_folder.h"
 #include "taut/base/error.h"
+#include "taut/mesh/topology.h"
 #include "test_data.h"
 
 namespace taut::test {
@@ -200,9 +201,16 @@ TEST(ReadObj, TShirtBodyAndDress) {
   EXPECT_EQ(shirt.positions.size(), 2799u);
   EXPECT_EQ(shirt.triangles.size(), 5483u);
   EXPECT_EQ(shirt.texcoords.size(), 2799u);
+  EXPECT_NO_THROW(check_cloth_mesh(shirt, "tshirt.obj"));
+  const Topology topology = build_topology(shirt);
+  EXPECT_EQ(topology.hinges.size() + topology.boundary_edges.size(), topology.edges.size());
+  EXPECT_EQ(2 * topology.hinges.size() + topology.boundary_edges.size(), 3 * shirt.triangles.size());
+  // A shirt has four holes: V - E + F = 2 - 4.
+  EXPECT_EQ(2799 - static_cast<int>(topology.edges.size()) + 5483, -2);
   const TriangleMesh body = read_obj(*data / "body/body_rest_tri.obj");
   EXPECT_EQ(body.positions.size(), 13380u);
   EXPECT_EQ(body.triangles.size(), 26756u);
+  EXPECT_TRUE(build_topology(body).boundary_edges.empty());
   std::vector<std::string> notes;
   const TriangleMesh dress = read_obj(*data / "stitched-dress/dress_knife_stage.obj.gz", &notes);
   EXPECT_EQ(dress.positions.size(), 15656u);

@@ -6,8 +6,8 @@ namespace taut {
 
 namespace {
 
-// Beyond this many corners only the plain fan is tried: the search is quadratic, and a file may hold one polygon of a million corners.
-constexpr std::size_t most_searched = 1000;
+// Beyond this many corners only the plain fan is tried: the search is quadratic, and a file may hold a polygon of a million corners.
+constexpr std::size_t most_searched = 64;
 
 Triangle fan_triangle(std::span<const Index> corner, std::size_t start, std::size_t k) {
   const std::size_t n = corner.size();

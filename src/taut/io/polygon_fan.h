@@ -15,7 +15,8 @@
 
 namespace taut {
 
-// The first start without a fold; none when every fan folds. `corner` holds vertex indices, all within `positions`. O(n^2) at worst.
+// The first start without a fold; none when every fan folds (of more than 64 corners: when the first does). `corner` holds vertex indices,
+// all within `positions`. O(n^2) at worst.
 std::optional<Index> unfolded_fan_start(std::span<const Index> corner, std::span<const Vec3> positions);
 
 // Appends the fan's triangles.
