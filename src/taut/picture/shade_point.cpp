@@ -80,7 +80,7 @@ std::optional<ShadePoint> SurfaceLookup::at(const Vec3f& ray_origin, const Vec3f
   ShadePoint point;
   point.position = ray_origin + hits.distance[lane] * ray_direction;
   const Vec3f area = (e.positions[v[1]] - e.positions[v[0]]).cross(e.positions[v[2]] - e.positions[v[0]]);
-  const float length = area.stableNorm();
+  const float length = area.norm();
   if (!(length > 0.0F)) return std::nullopt;
   const bool front = area.dot(ray_direction) < 0.0F;
   point.facing = area * ((front ? 1.0F : -1.0F) / length);
