@@ -46,7 +46,7 @@ class Simulation {
   const ClothModel& cloth() const { return cloth_; }
   const State& state() const { return state_; }
   int steps_done() const { return steps_; }
-  SolidContact& contact() { return contact_; }
+  const SolidContact& contact() const { return contact_; }
   Stepper& stepper() { return stepper_; }
   const ConstraintSet& constraints() const { return constraints_; }
 

@@ -1,0 +1,12 @@
+#pragma once
+// What `run` and `resume` share: run with progress and interruption, draw the contact sheet, say what came out and where it is.
+
+#include "progress.h"
+#include "taut/scene/run.h"
+
+namespace taut::app {
+
+// Returns the exit code.
+int simulate(Simulation& simulation, const ResultsFolder& results, ProgressStyle style, int first_frame);
+
+}  // namespace taut::app

@@ -1,0 +1,35 @@
+#include <fmt/format.h>
+
+#include "simulate.h"
+#include "taut/base/parallel.h"
+#include "taut/scene/scene_file.h"
+#include "verbs.h"
+
+namespace taut::app {
+
+namespace {
+
+int resume(const std::string& folder, int threads, bool quiet) {
+  if (threads > 0) set_thread_count(threads);
+  const ResultsFolder results(folder);
+  Simulation simulation(read_scene(results.scene_file()));
+  const int frame = results.read_checkpoint(simulation);
+  if (!quiet) fmt::print(stderr, "going on after frame {} (step {})\n", frame, simulation.steps_done());
+  return simulate(simulation, results, quiet ? ProgressStyle::quiet : ProgressStyle::automatic, frame);
+}
+
+}  // namespace
+
+void add_resume_verb(CLI::App& app, int& exit_code) {
+  CLI::App* verb = app.add_subcommand("resume", "Go on with an interrupted simulation, to the same bits");
+  auto folder = std::make_shared<std::string>();
+  auto threads = std::make_shared<int>(0);
+  auto quiet = std::make_shared<bool>(false);
+  verb->add_option("DIR", *folder, "Results folder of the interrupted run")->required();
+  verb->add_option("--threads", *threads, "Threads to use (default: all processors)")->check(CLI::Range(1, 1024));
+  verb->add_flag("--quiet", *quiet, "No progress and no table");
+  verb->footer("Example: taut resume out/ball");
+  verb->callback([=, &exit_code] { exit_code = resume(*folder, *threads, *quiet); });
+}
+
+}  // namespace taut::app

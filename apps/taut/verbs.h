@@ -1,0 +1,14 @@
+#pragma once
+// The program's verbs, one file each. A verb adds itself as a subcommand; its callback returns by setting `exit_code`:
+// 0 done, 1 failed, 2 bad usage. Errors are thrown as InputError and printed by main().
+
+#include <CLI/CLI.hpp>
+
+namespace taut::app {
+
+void add_run_verb(CLI::App& app, int& exit_code);
+void add_resume_verb(CLI::App& app, int& exit_code);
+void add_check_verb(CLI::App& app, int& exit_code);
+void add_export_verb(CLI::App& app, int& exit_code);
+
+}  // namespace taut::app

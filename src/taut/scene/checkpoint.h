@@ -1,0 +1,27 @@
+#pragma once
+// Everything needed to go on with a simulation to the same bits, as one binary file (little-endian):
+//
+//   "TAUTCKP1", then the scene as TOML (length, bytes), steps done, frame, time, has_previous, the arrays x, v, x_prev, v_prev, last (length, doubles),
+//   the contacts, and a checksum (FNV-1a, 64 bits) of all before it
+
+#include <iosfwd>
+#include <string>
+
+#include "taut/contact/solid_contact.h"
+#include "taut/step/state.h"
+
+namespace taut {
+
+struct Checkpoint {
+  std::string scene;  // TOML, all defaults filled in
+  int steps = 0;
+  int frame = 0;
+  State state;
+  ContactState contacts;
+};
+
+void write(std::ostream& out, const Checkpoint& checkpoint);
+// `name` stands in messages. Throws InputError on anything but a complete checkpoint of this version.
+Checkpoint parse_checkpoint(const std::string& bytes, const std::string& name);
+
+}  // namespace taut

@@ -1,0 +1,126 @@
+#include "taut/scene/results.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "taut/base/error.h"
+#include "taut/base/file.h"
+#include "taut/io/npy.h"
+#include "taut/scene/checkpoint.h"
+#include "taut/scene/scene_file.h"
+
+namespace taut {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// What a run may leave in its folder; anything else there belongs to somebody.
+constexpr const char* own_names[] = {"scene.toml", "frames", "stats.csv", "summary.json", "checkpoint", "contact_sheet.png"};
+
+void refuse_foreign_folder(const fs::path& folder) {
+  if (!fs::exists(folder)) return;
+  if (!fs::is_directory(folder)) throw InputError({folder.string()}, "is a file; give a folder for the results with --out");
+  if (fs::is_empty(folder) || fs::exists(folder / "scene.toml")) return;
+  throw InputError({folder.string()}, "holds files but no earlier result (no scene.toml); give an empty or new folder with --out");
+}
+
+std::string cloths_json(const ClothModel& cloth) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const ClothPart& part : cloth.parts())
+    list.push_back({{"name", part.name},
+                    {"first_node", part.first_node},
+                    {"nodes", part.node_count},
+                    {"first_triangle", part.first_triangle},
+                    {"triangles", part.triangle_count}});
+  return list.dump(2) + "\n";
+}
+
+}  // namespace
+
+fs::path ResultsFolder::frame_file(int frame) const { return folder_ / "frames" / fmt::format("{:06}.npy", frame); }
+
+void ResultsFolder::start(const Simulation& simulation) const {
+  refuse_foreign_folder(folder_);
+  for (const char* name : own_names) fs::remove_all(folder_ / name);
+  write_file(scene_file(), scene_to_toml(simulation.scene()));
+  const TriangleMesh& surface = simulation.cloth().surface();
+  std::vector<std::int32_t> triangles;
+  for (const Triangle& t : surface.triangles) triangles.insert(triangles.end(), t.begin(), t.end());
+  std::vector<float> uv;
+  for (const Vec2& p : surface.texcoords) uv.insert(uv.end(), {static_cast<float>(p.x()), static_cast<float>(p.y())});
+  const std::int64_t triangle_shape[] = {static_cast<std::int64_t>(surface.triangles.size()), 3}, uv_shape[] = {static_cast<std::int64_t>(surface.texcoords.size()), 2};
+  write_npy<std::int32_t>(folder_ / "frames" / "triangles.npy", triangles, triangle_shape);
+  write_npy<float>(folder_ / "frames" / "uv.npy", uv, uv_shape);
+  write_file(folder_ / "frames" / "cloths.json", cloths_json(simulation.cloth()));
+}
+
+void ResultsFolder::write_frame(int frame, std::span<const Vec3> x) const { write_npy_float(frame_file(frame), x); }
+
+std::vector<Vec3> ResultsFolder::read_frame(int frame) const { return read_npy_nodes(frame_file(frame)); }
+
+int ResultsFolder::frame_count() const {
+  int count = 0;
+  while (fs::exists(frame_file(count))) ++count;
+  return count;
+}
+
+void ResultsFolder::remove_frames_after(int frame) const {
+  for (int f = frame + 1; fs::exists(frame_file(f)); ++f) fs::remove(frame_file(f));
+}
+
+void ResultsFolder::write_checkpoint(const Simulation& simulation, int frame) const {
+  const Checkpoint checkpoint{scene_to_toml(simulation.scene()), simulation.steps_done(), frame, simulation.state(), simulation.contact().state()};
+  write_file(checkpoint_file(), [&](std::ostream& out) { write(out, checkpoint); });
+}
+
+int ResultsFolder::read_checkpoint(Simulation& simulation) const {
+  Checkpoint checkpoint = parse_checkpoint(read_file(checkpoint_file()), checkpoint_file().string());
+  if (checkpoint.scene != scene_to_toml(simulation.scene()))
+    throw InputError({checkpoint_file().string()}, fmt::format("belongs to another scene than {}; run the scene anew with `taut run`", scene_file().string()));
+  if (static_cast<Index>(checkpoint.state.x.size()) != simulation.cloth().nodes())
+    throw InputError({checkpoint_file().string()}, fmt::format("has {} nodes, the scene has {}; a mesh file has changed since: run the scene anew", checkpoint.state.x.size(),
+                                                               simulation.cloth().nodes()));
+  simulation.restore(std::move(checkpoint.state), std::move(checkpoint.contacts), checkpoint.steps);
+  return checkpoint.frame;
+}
+
+std::string StatsWriter::header() {
+  return "step,time,frame,nodes,dof,constraints,contacts,solver,core_springs,iterations,relative_residual,"
+         "assemble_ms,order_ms,factor_ms,solve_ms,contact_ms,step_ms,kinetic_J,elastic_J,max_stretch,intersections,bound_iterations,precision,fallbacks,"
+         "collapsed_springs,retries,zone_nodes,contact_passes,contact_moved,deepest_m\n";
+}
+
+StatsWriter::StatsWriter(const fs::path& path, int keep_steps) : path_(path) {
+  std::string content = header();
+  if (keep_steps > 0) {
+    content = read_file(path);
+    std::size_t end = 0;
+    for (int line = 0; line <= keep_steps; ++line) {
+      end = content.find('\n', end);
+      if (end == std::string::npos) throw InputError({path.string()}, fmt::format("has fewer than the {} steps of the checkpoint; run the scene anew", keep_steps));
+      ++end;
+    }
+    content.resize(end);
+  }
+  write_file(path, content);
+  file_ = std::fopen(path.c_str(), "ab");
+  if (!file_) throw InputError({path.string()}, "cannot be written; check the folder's permissions");
+}
+
+StatsWriter::~StatsWriter() { std::fclose(file_); }
+
+void StatsWriter::write(const StepRecord& r, int frame) {
+  const auto optional = [](auto value, auto nothing) { return value == nothing ? std::string() : std::to_string(value); };
+  const std::string row = fmt::format(
+      "{},{:.9g},{},{},{},{},{},{},{},{},{:.3e},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.9g},{:.9g},{:.6g},,{},double,{},{},,,{},{},{:.3e}\n", r.step, r.time,
+      frame, r.nodes, r.dof, r.constraints, r.contacts, r.solver, optional(r.core_springs, Index{0}), r.iterations, r.relative_residual, r.assemble_ms, r.order_ms,
+      r.factor_ms, r.solve_ms, r.contact_ms, r.step_ms, r.kinetic_J, r.elastic_J, r.max_stretch, optional(r.bound_iterations, -1), r.fallbacks,
+      r.collapsed_springs, r.contact_passes, r.contact_moved, r.deepest_m);
+  // One write a row: a reader, or a crash, never sees half of one.
+  if (std::fwrite(row.data(), 1, row.size(), file_) != row.size() || std::fflush(file_) != 0)
+    throw InputError({path_.string()}, "cannot be written; is the disk full? The steps up to here are safe: `taut resume` goes on");
+}
+
+}  // namespace taut

@@ -1,0 +1,68 @@
+#pragma once
+// The folder that `taut run` writes (docs/results.md):
+//
+//   scene.toml          what ran, all defaults filled in
+//   frames/NNNNNN.npy   node positions, float32 (nodes, 3), m; 000000 is the start
+//   frames/triangles.npy int32 (triangles, 3), frames/uv.npy float32 (nodes, 2), frames/cloths.json: which nodes belong to which cloth
+//   stats.csv           one row a step
+//   summary.json        how the run ended, with totals, machine and instruction set
+//   checkpoint/state.bin everything needed to go on, to the same bits
+//   contact_sheet.png   some frames in one picture
+//
+// Every file is written whole or not at all; stats.csv grows by whole rows.
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "taut/scene/simulation.h"
+
+namespace taut {
+
+class ResultsFolder {
+ public:
+  explicit ResultsFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  const std::filesystem::path& folder() const { return folder_; }
+  std::filesystem::path scene_file() const { return folder_ / "scene.toml"; }
+  std::filesystem::path frame_file(int frame) const;
+  std::filesystem::path stats_file() const { return folder_ / "stats.csv"; }
+  std::filesystem::path summary_file() const { return folder_ / "summary.json"; }
+  std::filesystem::path checkpoint_file() const { return folder_ / "checkpoint" / "state.bin"; }
+  std::filesystem::path contact_sheet_file() const { return folder_ / "contact_sheet.png"; }
+
+  // Makes the folder for a new run: results of an earlier run in it are removed. Throws InputError when the folder holds something that is not a
+  // result of Taut's.
+  void start(const Simulation& simulation) const;
+  void write_frame(int frame, std::span<const Vec3> x) const;
+  std::vector<Vec3> read_frame(int frame) const;
+  // How many frames there are, counted from 0 without a gap.
+  int frame_count() const;
+  void remove_frames_after(int frame) const;
+
+  void write_checkpoint(const Simulation& simulation, int frame) const;
+  // Restores the simulation and returns the frame the checkpoint was written at. Throws InputError when it is missing, damaged or of another scene.
+  int read_checkpoint(Simulation& simulation) const;
+
+ private:
+  std::filesystem::path folder_;
+};
+
+// stats.csv, a row a step, flushed row by row.
+class StatsWriter {
+ public:
+  // Starts the file, or keeps the rows up to `keep_steps` of the one that is there (after a resume).
+  StatsWriter(const std::filesystem::path& path, int keep_steps);
+  ~StatsWriter();
+  StatsWriter(const StatsWriter&) = delete;
+  StatsWriter& operator=(const StatsWriter&) = delete;
+  void write(const StepRecord& record, int frame);
+  static std::string header();
+
+ private:
+  std::filesystem::path path_;
+  std::FILE* file_ = nullptr;
+};
+
+}  // namespace taut

@@ -1,0 +1,127 @@
+#include "taut/scene/run.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <nlohmann/json.hpp>
+
+#include "taut/base/file.h"
+#include "taut/base/parallel.h"
+#include "taut/base/simd.h"
+#include "taut/base/timer.h"
+
+namespace taut {
+
+const char* name_of(RunEnd end) {
+  switch (end) {
+    case RunEnd::finished: return "finished";
+    case RunEnd::interrupted: return "interrupted";
+    case RunEnd::failed: return "failed";
+  }
+  return "unknown";
+}
+
+namespace {
+
+double peak_memory_MB() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+// Sums over the steps of this run, turned into means at the end.
+void add_step(RunSummary& summary, const StepRecord& r) {
+  ++summary.steps;
+  summary.mean_step_ms += r.step_ms;
+  summary.mean_iterations += r.iterations;
+  summary.mean_assemble_ms += r.assemble_ms;
+  summary.mean_solver_ms += r.order_ms + r.factor_ms + r.solve_ms;
+  summary.mean_contact_ms += r.contact_ms;
+  summary.max_iterations = std::max(summary.max_iterations, r.iterations);
+  summary.max_stretch = std::max(summary.max_stretch, r.max_stretch);
+  summary.deepest_m = std::max(summary.deepest_m, r.deepest_m);
+  summary.fallbacks += r.fallbacks;
+}
+
+void finish_means(RunSummary& summary) {
+  if (summary.steps == 0) return;
+  for (double* mean : {&summary.mean_step_ms, &summary.mean_iterations, &summary.mean_assemble_ms, &summary.mean_solver_ms, &summary.mean_contact_ms})
+    *mean /= summary.steps;
+}
+
+void write_summary(const RunSummary& s, const Simulation& simulation, const ResultsFolder& results) {
+  const Scene& scene = simulation.scene();
+  nlohmann::ordered_json json{{"title", scene.title},
+                              {"status", name_of(s.end)},
+                              {"message", s.message},
+                              {"nodes", s.nodes},
+                              {"frames", s.frames},
+                              {"steps_total", simulation.steps_done()},
+                              {"simulated_s", s.simulated_s},
+                              {"h", scene.time.step},
+                              {"integrator", name_of(scene.time.integrator)},
+                              {"solver", scene.solver.name},
+                              {"tolerance", scene.solver.tolerance},
+                              {"this_run",
+                               {{"steps", s.steps},
+                                {"wall_s", s.wall_s},
+                                {"mean_step_ms", s.mean_step_ms},
+                                {"mean_assemble_ms", s.mean_assemble_ms},
+                                {"mean_solver_ms", s.mean_solver_ms},
+                                {"mean_contact_ms", s.mean_contact_ms},
+                                {"mean_iterations", s.mean_iterations},
+                                {"max_iterations", s.max_iterations},
+                                {"max_stretch", s.max_stretch},
+                                {"deepest_m", s.deepest_m},
+                                {"fallbacks", s.fallbacks}}},
+                              {"threads", thread_count()},
+                              {"instruction_set", instruction_set()},
+                              {"peak_memory_MB", s.peak_memory_MB},
+                              {"taut_version", TAUT_VERSION}};
+  write_file(results.summary_file(), json.dump(2) + "\n");
+}
+
+}  // namespace
+
+RunSummary run(Simulation& simulation, const ResultsFolder& results, RunObserver& observer, const std::atomic<bool>& interrupt, int first_frame) {
+  Timer timer;
+  const TimeOptions& time = simulation.scene().time;
+  const int steps_total = time.frames * time.steps_per_frame;
+  RunSummary summary;
+  summary.nodes = simulation.cloth().nodes();
+  results.remove_frames_after(first_frame);
+  if (first_frame == 0) results.write_frame(0, simulation.state().x);
+  StatsWriter stats(results.stats_file(), simulation.steps_done());
+  int frame = first_frame;
+  while (simulation.steps_done() < steps_total) {
+    if (interrupt) {
+      summary.end = RunEnd::interrupted;
+      break;
+    }
+    StepRecord record;
+    const Status status = simulation.step(record);
+    if (!status.ok()) {
+      summary.end = RunEnd::failed;
+      summary.message = status.message;
+      break;
+    }
+    if (record.fallbacks > 0) observer.on_message(fmt::format("step {}: {} failed; solved directly instead", record.step, simulation.scene().solver.name));
+    const bool ends_frame = simulation.steps_done() % time.steps_per_frame == 0;
+    stats.write(record, simulation.steps_done() / time.steps_per_frame);
+    add_step(summary, record);
+    observer.on_step(record, steps_total);
+    if (!ends_frame) continue;
+    results.write_frame(++frame, simulation.state().x);
+    results.write_checkpoint(simulation, frame);
+    observer.on_frame(frame, time.frames);
+  }
+  summary.frames = frame + 1;
+  summary.simulated_s = simulation.state().time;
+  summary.wall_s = timer.milliseconds() / 1000.0;
+  summary.peak_memory_MB = peak_memory_MB();
+  finish_means(summary);
+  write_summary(summary, simulation, results);
+  return summary;
+}
+
+}  // namespace taut
