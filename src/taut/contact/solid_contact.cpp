@@ -4,6 +4,7 @@
 #include <array>
 #include <cassert>
 #include <tuple>
+#include <utility>
 
 #include "taut/base/error.h"
 #include "taut/base/parallel.h"
@@ -12,10 +13,14 @@
 namespace taut {
 namespace {
 
-constexpr double pull_share = 1e-9;       // of the largest impulse: a pull below it is rounding
-constexpr double friction_share = 1e-2;   // friction of all nodes together that may be out of date at the fixed point
+constexpr double rounding_share = 1e-9;   // of the largest impulse: a pull below it is rounding
+constexpr double pull_share = 1e-2;       // of all pushes: pulls that may wait until the next step
+constexpr double friction_share = 5e-2;   // of what all nodes can hold: friction that may be out of date
 constexpr double still = 1e-12;           // m: relative motion in one step below which a node does not slide
-constexpr int most_slides = 3;            // turns from stick to slide in one step
+constexpr int friction_passes = 4;        // from here on friction stays as it is, and only the normals go on
+constexpr int friction_updates = 3;       // of one node in one step
+constexpr int longest_wait = 15;          // steps until a node that broke loose is held again
+constexpr double riding_share = 1e-2;     // of a node's way, by which it may slip where it starts to stick at first touch
 constexpr int most_renewals = 2;          // passes asked for because a node floats over a curved surface or an edge, in one step
 constexpr int most_releases = 2;          // of one contact in one step
 constexpr std::size_t most_normals = 16;  // of one node; any further ones depend on them
@@ -48,11 +53,10 @@ void SolidContact::begin_step(double t, double h, std::span<const Vec3> x, std::
   releases_.clear();
   touched_.clear();
   keep_contacts(h, x_predicted);
-  counts_.added = add_met(x_predicted, options_.touch_tolerance);
+  counts_.added = add_predicted(x_predicted);
   group();
   renew_planes(x_predicted);
-  start_friction(x_predicted);
-  renew_planes(x_predicted);
+  start_fresh(x_predicted);
   fill_impulses();
 }
 
@@ -72,32 +76,27 @@ bool SolidContact::update(std::span<const Vec3> x_end, std::span<const Vec3> con
   ++counts_.passes;
   double largest = 0.0;
   for (const TouchedNode& touched : touched_) largest = std::max(largest, constraint_impulse[touched.node].squaredNorm());
-  const double negligible = pull_share * std::sqrt(largest);
+  const double negligible = rounding_share * std::sqrt(largest);
   parallel_for(static_cast<Index>(touched_.size()), contact_grain, [&](Index begin, Index end) {
     for (Index k = begin; k < end; ++k) judge(touched_[k], x_end[touched_[k].node], constraint_impulse[touched_[k].node], negligible);
   });
 
-  double friction = 0.0, change = 0.0;
-  bool turned = false, floats = false;
+  double hold = 0.0, change = 0.0;
   for (const TouchedNode& touched : touched_) {
-    friction += touched.friction.norm();
+    hold += touched.hold;
     change += touched.change;
-    turned |= touched.turned;
-    if (touched.turned) ++(touched.sticking ? counts_.slide_to_stick : counts_.stick_to_slide);
+    counts_.stick_to_slide += touched.turned;
   }
-  const int released = drop_released();
-  const int added = add_met(x_end, -options_.touch_tolerance);
-  counts_.released += released;
-  counts_.added += added;
-  if (released + added > 0) group();
+  const bool pulls = drop_released();
+  const bool inside = add_inside(x_end);
   renew_planes(x_end);
+  start_fresh(x_end);
+  bool floats = false;
   for (TouchedNode& touched : touched_) floats |= touched.floats && ++touched.renewals <= most_renewals;
   fill_impulses();
-  const bool changed = turned || floats || released + added > 0 || change > friction_share * friction;
-  if (getenv("DBG") && counts_.passes >= options_.max_passes - 2)
-    std::printf("   pass %d turned %d floats %d rel %d add %d change %g of %g\n", counts_.passes, turned, floats, released, added, change,
-                friction);
-  return changed && counts_.passes < options_.max_passes;
+  const bool normals_changed = pulls || inside || floats;
+  const bool friction_changed = change > friction_share * hold;
+  return (normals_changed || friction_changed) && counts_.passes < options_.max_passes;
 }
 
 Index SolidContact::finish(std::span<Vec3> x_end) {
@@ -109,15 +108,31 @@ Index SolidContact::finish(std::span<Vec3> x_end) {
     counts_.moved += met_[i];
     counts_.deepest = std::max(counts_.deepest, depth[i]);
   }
+  for (TouchedNode& touched : touched_) settle(touched);
   remember();
   return counts_.moved;
+}
+
+// Stick and slide for the next step. Stiff cloth with slack springs pulls at its nodes irregularly, by more than friction holds: one that
+// broke loose is left to slide, with friction that stops it, for 1, 3, 7, 15 steps before it is held again.
+void SolidContact::settle(TouchedNode& touched) {
+  if (touched.turned_loose) {
+    touched.wait = touched.longest = std::min(2 * touched.longest + 1, longest_wait);
+  } else if (touched.sticking) {
+    touched.longest = 0;
+  } else if (touched.holds && touched.wait > 0) {
+    --touched.wait;
+  } else if (touched.holds) {
+    touched.sticking = true;
+    ++counts_.slide_to_stick;
+  }
 }
 
 bool SolidContact::move_out(Index node, Vec3& x_end, double& depth) const {
   if (pin_ndof_[node] != 3) return false;
   bool moved = false;
   for (std::size_t s = 0; s < steps_.size(); ++s) {
-    if (!steps_[s].meets(start_[node], x_end, -options_.touch_tolerance)) continue;
+    if (!steps_[s].meets(start_[node], x_end, -depth_tolerance(steps_[s]))) continue;
     const Vec3 anchor = steps_[s].anchor(start_[node], x_end, options_.touch_tolerance);
     const LandingPlane plane = steps_[s].landing(x_end, anchor);
     depth = std::max(depth, -plane.gap);
@@ -147,22 +162,19 @@ void SolidContact::keep_contacts(double h, std::span<const Vec3> x_predicted) {
     const double tolerance = std::max(options_.touch_tolerance, 2.0 * step.floating_tolerance());
     if (pin_ndof_[node] == 0 || step.start_gap(start_[node]) > tolerance) continue;
     Contact& contact = contacts_.emplace_back(contact_at(node, solid, x_predicted[node], tolerance));
-    contact.slid_before = !kept_.sticking[k];
-    contact.lambda = h * kept_.normal_force[k];
+    contact.kept = static_cast<Index>(k);
+    contact.lambda = h * kept_.normal_force[k].normal;
   }
 }
 
-void SolidContact::find_met(const SolidStep& step, std::span<const Vec3> x_end, double largest_gap) {
-  parallel_for(nodes_, node_grain, [&](Index begin, Index end) {
-    for (Index i = begin; i < end; ++i) met_[i] = pin_ndof_[i] != 0 && step.meets(start_[i], x_end[i], largest_gap);
-  });
-}
-
-int SolidContact::add_met(std::span<const Vec3> x_end, double largest_gap) {
+template <class Meets>
+int SolidContact::add_met(std::span<const Vec3> x_end, const Meets& meets) {
   constexpr auto order = [](const Contact& a, const Contact& b) { return std::tie(a.node, a.solid) < std::tie(b.node, b.solid); };
   const std::size_t before = contacts_.size();
   for (std::size_t s = 0; s < steps_.size(); ++s) {
-    find_met(steps_[s], x_end, largest_gap);
+    parallel_for(nodes_, node_grain, [&](Index begin, Index end) {
+      for (Index i = begin; i < end; ++i) met_[i] = pin_ndof_[i] != 0 && meets(steps_[s], start_[i], x_end[i]);
+    });
     Contact wanted;
     wanted.solid = static_cast<Index>(s);
     for (Index i = 0; i < nodes_; ++i) {
@@ -179,15 +191,41 @@ int SolidContact::add_met(std::span<const Vec3> x_end, double largest_gap) {
   return static_cast<int>(contacts_.size() - before);
 }
 
-int SolidContact::drop_released() {
-  int count = 0;
+int SolidContact::add_predicted(std::span<const Vec3> x_predicted) {
+  const double touch = options_.touch_tolerance;
+  return add_met(x_predicted, [&](const SolidStep& step, const Vec3& x0, const Vec3& x1) {
+    // The second line: a node that lies on a curved surface and moves along it, straight on as far as is known yet.
+    return step.meets(x0, x1, touch) || (step.meets(x0, x1, depth_tolerance(step)) && step.start_gap(x0) <= touch);
+  });
+}
+
+bool SolidContact::add_inside(std::span<const Vec3> x_end) {
+  for (Contact& contact : contacts_) contact.fresh = false;
+  const double touch = options_.touch_tolerance;
+  const int added = add_met(x_end, [&](const SolidStep& step, const Vec3& x0, const Vec3& x1) { return step.meets(x0, x1, -touch); });
+  counts_.added += added;
+  if (added > 0) group();
+  return std::ranges::any_of(contacts_, [&](const Contact& contact) {
+    // What is barely inside can wait: it is in the set from the next step on.
+    const SolidStep& step = step_of(contact);
+    return contact.fresh && step.meets(start_[contact.node], x_end[contact.node], -depth_tolerance(step));
+  });
+}
+
+bool SolidContact::drop_released() {
+  double pull = 0.0, push = 0.0;
   for (const Contact& contact : contacts_) {
+    push += std::max(contact.lambda, 0.0);
     if (!contact.released) continue;
-    ++count;
+    pull -= contact.lambda;
+    ++counts_.released;
     ++releases_[{contact.node, contact.solid}];
   }
-  if (count > 0) std::erase_if(contacts_, [](const Contact& contact) { return contact.released; });
-  return count;
+  if (pull > 0.0) {
+    std::erase_if(contacts_, [](const Contact& contact) { return contact.released; });
+    group();
+  }
+  return pull > pull_share * push;
 }
 
 void SolidContact::group() {
@@ -202,17 +240,30 @@ void SolidContact::group() {
     touched.node = node;
     touched.first = first;
     touched.count = 0;
-    bool slid_before = false;
+    Index kept = -1;
     for (; first < std::ssize(contacts_) && contacts_[first].node == node; ++first, ++touched.count)
-      slid_before |= contacts_[first].slid_before;
-    if (!known) touched.sticking = has_friction(touched) && !slid_before;
-    if (!has_friction(touched)) touched.sticking = false;
+      kept = std::max(kept, contacts_[first].kept);
+    touched.fresh = !known;
+    if (!known && kept >= 0) recall(touched, static_cast<std::size_t>(kept));
+    touched.sticking = touched.sticking && has_friction(touched);
     grouped.push_back(touched);
   }
   touched_ = std::move(grouped);
 }
 
+void SolidContact::recall(TouchedNode& touched, std::size_t kept) const {
+  const ContactStick& stick = kept_.sticking[kept];
+  const ContactForce& force = kept_.normal_force[kept];
+  touched.sticking = stick.sticks != 0;
+  touched.wait = stick.wait;
+  touched.longest = stick.longest_wait;
+  touched.friction = h_ * Vec3(force.friction.data());
+  touched.compliance = h_ * force.inverse_mass;
+}
+
 // ---- normals and planes ----------------------------------------------------------------------------------------------------------
+
+double SolidContact::depth_tolerance(const SolidStep& step) const { return std::max(options_.touch_tolerance, step.floating_tolerance()); }
 
 bool SolidContact::has_friction(const TouchedNode& touched) const {
   return std::ranges::any_of(of(touched), [&](const Contact& contact) { return step_of(contact).friction() > 0.0; });
@@ -241,27 +292,28 @@ SolidContact::Normals SolidContact::normals_of(const TouchedNode& touched) const
 
 void SolidContact::renew_planes(std::span<const Vec3> x_end) {
   parallel_for(static_cast<Index>(touched_.size()), contact_grain, [&](Index begin, Index end) {
-    for (Index k = begin; k < end; ++k) {
-      TouchedNode& touched = touched_[k];
-      const Contact* holding = touched.sticking ? &holder(touched) : nullptr;
-      touched.floats = false;
-      for (Contact& contact : of(touched)) {
-        const SolidStep& step = step_of(contact);
-        const Vec3& x0 = start_[contact.node];
-        if (&contact == holding) {
-          contact.normal = step.end_normal(contact.anchor);
-          contact.distance = contact.normal.dot(contact.target - x0);
-          continue;
-        }
-        const Vec3& x1 = touched.sticking ? holding->target : x_end[contact.node];
-        const LandingPlane plane = step.landing(x1, contact.anchor);
-        contact.normal = plane.normal;
-        contact.distance = plane.normal.dot(x1 - x0) - plane.gap;
-        touched.floats |= std::abs(plane.gap) > std::max(options_.touch_tolerance, step.floating_tolerance());
-      }
-      if (!touched.friction.isZero(0.0)) touched.friction = tangential_part(normals_of(touched).span(), touched.friction);
-    }
+    for (Index k = begin; k < end; ++k) renew_planes(touched_[k], x_end[touched_[k].node]);
   });
+}
+
+void SolidContact::renew_planes(TouchedNode& touched, const Vec3& x_end) {
+  const Contact* holding = touched.sticking ? &holder(touched) : nullptr;
+  const Vec3& x0 = start_[touched.node];
+  const Vec3& x1 = holding ? holding->target : x_end;
+  touched.floats = false;
+  for (Contact& contact : of(touched)) {
+    const SolidStep& step = step_of(contact);
+    if (&contact == holding) {
+      contact.normal = step.end_normal(contact.anchor);
+      contact.distance = contact.normal.dot(contact.target - x0);
+      continue;
+    }
+    const LandingPlane plane = step.landing(x1, contact.anchor);
+    contact.normal = plane.normal;
+    contact.distance = plane.normal.dot(x1 - x0) - plane.gap;
+    touched.floats |= std::abs(plane.gap) > depth_tolerance(step) && !contact.fresh;
+  }
+  if (!touched.friction.isZero(0.0)) touched.friction = tangential_part(normals_of(touched).span(), touched.friction);
 }
 
 // ---- friction --------------------------------------------------------------------------------------------------------------------
@@ -271,28 +323,50 @@ Vec3 SolidContact::slip_of(const Contact& contact, const Normals& normals, const
   return tangential_part(normals.span(), pin_ndof_[contact.node] == 3 ? slip : Vec3(free_of_pins(contact.node) * slip));
 }
 
-bool SolidContact::slips(const TouchedNode& touched, const Normals& normals, const Vec3& x_end) const {
-  return std::ranges::any_of(of(touched), [&](const Contact& contact) { return slip_of(contact, normals, x_end).norm() > still; });
+// Does the node move with its solids, but for a small share of its way?
+bool SolidContact::rides(const TouchedNode& touched, const Normals& normals, const Vec3& x_end) const {
+  const double slack = std::max(still, riding_share * (x_end - start_[touched.node]).norm());
+  return std::ranges::all_of(of(touched), [&](const Contact& contact) { return slip_of(contact, normals, x_end).norm() <= slack; });
 }
 
-// Sum over the node's contacts of mu lambda against its motion relative to that solid. `without` (m) is what friction took from that
-// motion.
-Vec3 SolidContact::friction_of(const TouchedNode& touched, const Normals& normals, const Vec3& x_end, const Vec3& without) const {
+double SolidContact::hold_of(const TouchedNode& touched) const {
+  double hold = 0.0;
+  for (const Contact& contact : of(touched)) hold += step_of(contact).friction() * std::max(contact.lambda, 0.0);
+  return hold;
+}
+
+// Sum over the contacts of mu lambda against the slip, to which what friction has taken from it (m) is added back.
+Vec3 SolidContact::sliding_friction(const TouchedNode& touched, const Normals& normals, const Vec3& x_end, const Vec3& taken) const {
   Vec3 friction = Vec3::Zero();
   for (const Contact& contact : of(touched)) {
-    const Vec3 slip = slip_of(contact, normals, x_end) + without;
+    const Vec3 slip = slip_of(contact, normals, x_end) - taken;
     const double length = slip.norm();
     if (length > still) friction -= step_of(contact).friction() * std::max(contact.lambda, 0.0) / length * slip;
   }
   return friction;
 }
 
-void SolidContact::start_friction(std::span<const Vec3> x_predicted) {
+// Coulomb's friction against the slip that would be there without friction (`compliance` times friction is what it takes away), but no more
+// than stops it. To go by the slip that is left would diverge for nodes close to rest.
+Vec3 SolidContact::renewed_friction(const TouchedNode& touched, const Normals& normals, const Vec3& x_end) const {
+  const Vec3 taken = touched.compliance * touched.friction;
+  const Vec3 friction = sliding_friction(touched, normals, x_end, taken);
+  if (touched.compliance == 0.0) return friction;
+  const Vec3 stopping = (taken - slip_of(holder(touched), normals, x_end)) / touched.compliance;
+  return stopping.squaredNorm() < friction.squaredNorm() ? stopping : friction;
+}
+
+// Nodes new to the set ride with the solid if they do not move on it, else slide; those of the step before go on.
+void SolidContact::start_fresh(std::span<const Vec3> x_end) {
   for (TouchedNode& touched : touched_) {
-    if (touched.sticking || !has_friction(touched)) continue;
+    if (!std::exchange(touched.fresh, false) || touched.sticking || !has_friction(touched)) continue;
+    const double size = touched.friction.norm();
+    if (size > 0.0 && size < (1.0 - friction_share) * hold_of(touched)) continue;  // less than it can be: what stops the node
+    const Vec3& x1 = x_end[touched.node];
     const Normals normals = normals_of(touched);
-    touched.friction = friction_of(touched, normals, x_predicted[touched.node], Vec3::Zero());
-    touched.sticking = !slips(touched, normals, x_predicted[touched.node]);
+    touched.sticking = touched.wait == 0 && rides(touched, normals, x1);
+    touched.friction = sliding_friction(touched, normals, x1, Vec3::Zero());
+    if (touched.sticking) renew_planes(touched, x1);
   }
 }
 
@@ -309,48 +383,48 @@ void SolidContact::judge(TouchedNode& touched, const Vec3& x_end, const Vec3& im
     contacts[k].lambda = lambda[k];
     if (lambda[k] < -negligible && !contacts[k].stays && (!pulling || lambda[k] < pulling->lambda)) pulling = &contacts[k];
   }
-  if (pulling)
-    pulling->released = true;
-  else if (touched.sticking)
+  touched.hold = hold_of(touched);
+  if (pulling) pulling->released = true;
+  if (pulling || counts_.passes > friction_passes || touched.updates == friction_updates || !has_friction(touched)) return;
+  ++touched.updates;
+  if (touched.sticking)
     judge_stick(touched, tangential, negligible);
-  else if (has_friction(touched))
+  else
     judge_slide(touched, normals, x_end);
 }
 
 void SolidContact::judge_stick(TouchedNode& touched, const Vec3& tangential, double negligible) {
-  double hold = 0.0;
-  for (const Contact& contact : of(touched)) hold += step_of(contact).friction() * std::max(contact.lambda, 0.0);
-  const double pull = tangential.norm();
-  if (pull <= hold + negligible || touched.slides == most_slides) return;
+  const double needed = tangential.norm();
+  if (needed <= touched.hold + negligible) return;
   touched.sticking = false;
-  touched.turned = true;
-  ++touched.slides;
-  touched.friction = hold / pull * tangential;
+  touched.turned = touched.turned_loose = true;
+  touched.change = needed - touched.hold;
+  touched.friction = touched.hold / needed * tangential;
   touched.last_friction = tangential;
   touched.last_slip = Vec3::Zero();
 }
 
 void SolidContact::judge_slide(TouchedNode& touched, const Normals& normals, const Vec3& x_end) {
   const Vec3 slip = slip_of(holder(touched), normals, x_end);
-  // Friction that would drive the node instead of slowing it: the node has come to rest within the step.
-  if (slip.dot(touched.friction) > 0.0 || !slips(touched, normals, x_end)) {
-    touched.sticking = true;
-    touched.turned = true;
-    touched.friction.setZero();
-    return;
-  }
-  // Friction opposes the slip that would be there without it. Two passes tell how much slip an impulse takes away; to go by the slip that
-  // is left would diverge for nodes close to rest.
-  if (touched.last_slip) {
-    const double impulse = (touched.friction - touched.last_friction).norm(), answer = (slip - *touched.last_slip).norm();
-    if (impulse > friction_share * touched.friction.norm()) touched.compliance = answer / impulse;
-  }
-  const Vec3 without = -touched.compliance * touched.friction;
+  learn_compliance(touched, slip);
+  const bool reversed = slip.dot(touched.friction) > 0.0;
   touched.last_friction = touched.friction;
   touched.last_slip = slip;
-  const Vec3 renewed = friction_of(touched, normals, x_end, without);
+  // Friction that drives the node instead of slowing it is too much; how much is not known before a second pass.
+  const bool unknown = touched.compliance == 0.0 && reversed;
+  const Vec3 renewed = unknown ? Vec3(0.5 * touched.friction) : renewed_friction(touched, normals, x_end);
+  touched.holds = reversed || renewed.norm() < (1.0 - friction_share) * touched.hold;
   touched.change = (renewed - touched.friction).norm();
   touched.friction = renewed;
+}
+
+void SolidContact::learn_compliance(TouchedNode& touched, const Vec3& slip) {
+  if (!touched.last_slip) return;
+  const Vec3 impulse = touched.friction - touched.last_friction;
+  const double size = impulse.squaredNorm();
+  if (size <= friction_share * friction_share * touched.hold * touched.hold) return;
+  const double compliance = impulse.dot(slip - *touched.last_slip) / size;
+  if (compliance > 0.0) touched.compliance = compliance;
 }
 
 void SolidContact::fill_impulses() {
@@ -367,13 +441,17 @@ int SolidContact::sticking() const { return static_cast<int>(std::ranges::count_
 
 void SolidContact::remember() {
   kept_ = {};
-  for (const TouchedNode& touched : touched_)
+  for (const TouchedNode& touched : touched_) {
+    const Vec3 friction = touched.friction / h_;
+    const ContactStick stick{touched.sticking, static_cast<std::uint8_t>(touched.wait), static_cast<std::uint8_t>(touched.longest)};
     for (const Contact& contact : of(touched)) {
       kept_.node.push_back(contact.node);
       kept_.solid.push_back(contact.solid);
-      kept_.sticking.push_back(touched.sticking);
-      kept_.normal_force.push_back(std::max(contact.lambda, 0.0) / h_);
+      kept_.sticking.push_back(stick);
+      kept_.normal_force.push_back(
+          {std::max(contact.lambda, 0.0) / h_, {friction.x(), friction.y(), friction.z()}, touched.compliance / h_});
     }
+  }
 }
 
 void SolidContact::restore(ContactState state) {

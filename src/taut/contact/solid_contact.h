@@ -8,18 +8,24 @@
 //   j                constraint impulse on a node, N s, pointing as the solid pushes:  (I - S)(A dv - b)
 //   lambda_k         j split along the node's contact normals (impulse_split.h), N s; j_t what is left. A contact is let go when lambda < 0
 //   sticking         ndof 0: the node ends where the solid's material point carries it. Holds while |j_t| <= sum mu_k lambda_k
-//   sliding          ndof 2 (or 1): friction impulse sum mu_k lambda_k against the direction of relative motion, lambda from the pass
-//   before
+//   sliding          ndof 2 (or 1): friction impulse of at most sum mu_k lambda_k against the slip (motion relative to the solid, in the
+//                    directions that the normals leave free), and never more than stops it
 //
 // One step is   begin_step; do { constrain; solve with impulses } while (update); finish.
-// A new contact sticks at first (if mu > 0); contacts of the step before go on as they were. A pass changes the set where it is wrong:
-// releases what pulls (of one node's contacts the one that pulls most), turns stick into slide and back, adds nodes that ended inside,
-// renews planes of nodes that float over a curved surface, renews friction when it is off by more than 1 %, all nodes together.
-// Against cycling: a contact that was let go twice in a step and hit again stays until the next step; a node turns from stick to
-// slide at most three times a step, then sticks. What still ends inside at the pass limit, `finish` moves to the surface.
+// The set begins with the contacts of the step before and nodes that are predicted to touch. A node that hardly slips (1 % of its way) sticks,
+// others slide. A pass changes the set where it is wrong: it releases what pulls (of one node's contacts the one that pulls most), adds nodes that
+// ended inside, turns stick into slide, renews friction, and renews the planes of nodes that float over a curved surface. Sliding becomes
+// sticking at the end of a step, where friction was more than enough to stop the node; a node that broke loose waits 1, 3, 7, 15 steps.
+//
+// Each pass costs a linear solve, so small faults wait for the next step, which begins with them mended: a node inside by less than
+// 2e-4 of the solid's size (touch_tolerance on planes), pulls of together less than 1 % of all pushes, friction that is off by together less
+// than 5 % of what all nodes can hold. Friction is renewed at most 3 times a node and not after pass 4: then only normals change, which
+// ends. Against cycling: a contact that was let go twice in a step and hit again stays until the next step. What still
+// ends inside at the pass limit, `finish` moves to the surface.
 //
 // Deterministic (order: node, then solid; the same bits for any thread count). One step at a time, one thread calls; loops run in parallel.
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -33,12 +39,27 @@
 
 namespace taut {
 
-// What is remembered from one step to the next; one entry a contact, ordered by node, then solid.
+// What is remembered of a contact from one step to the next. Friction, inverse mass and the waits are the node's, the same for all its
+// contacts.
+struct ContactForce {
+  double normal = 0.0;                  // N: lambda / h
+  std::array<double, 3> friction = {};  // N, of a sliding node
+  double inverse_mass = 0.0;            // 1/kg: how readily friction slows the node; 0 if not known
+  bool operator==(const ContactForce&) const = default;
+};
+struct ContactStick {
+  std::uint8_t sticks = 0;        // 1: the node sticks, 0: it slides
+  std::uint8_t wait = 0;          // steps until a node that broke loose may stick again,
+  std::uint8_t longest_wait = 0;  // and how long that was from the start
+  bool operator==(const ContactStick&) const = default;
+};
+
+// One entry a contact, ordered by node, then solid. Elements without padding, so that a checkpoint may store them as bytes.
 struct ContactState {
   std::vector<Index> node;
   std::vector<Index> solid;
-  std::vector<std::uint8_t> sticking;  // 1: the node sticks, 0: it slides
-  std::vector<double> normal_force;    // N: lambda / h
+  std::vector<ContactStick> sticking;
+  std::vector<ContactForce> normal_force;
   bool operator==(const ContactState&) const = default;
 };
 
@@ -67,7 +88,7 @@ class SolidContact {
   std::span<const Vec3> impulses() const;
   // After a pass: x_end, m, and j, N s, one each a node. True when another pass is needed; false at the fixed point or at max_passes.
   bool update(std::span<const Vec3> x_end, std::span<const Vec3> constraint_impulse);
-  // After the last pass: moves nodes (without pins) that end inside by more than touch_tolerance to the surface and returns how many.
+  // After the last pass: moves nodes (without pins) that end inside by more than the tolerance above to the surface and returns how many.
   // Keeps the contacts for the next step.
   Index finish(std::span<Vec3> x_end);
 
@@ -91,7 +112,8 @@ class SolidContact {
     Vec3 normal = Vec3::UnitZ();
     double distance = 0.0;  // m: n·(x_end - x_start)
     double lambda = 0.0;    // N s
-    bool slid_before = false;
+    Index kept = -1;        // its entry in the state of the step before
+    bool fresh = true;
     bool stays = false;
     bool released = false;
   };
@@ -100,16 +122,22 @@ class SolidContact {
     Index node = 0;
     Index first = 0;
     Index count = 0;
+    bool fresh = true;
     bool sticking = false;
-    bool turned = false;                // between stick and slide, in this pass
+    bool turned = false;                // from stick to slide, in this pass
+    bool turned_loose = false;          // that, in this step
+    bool holds = false;                 // slides, but friction would stop it
+    int updates = 0;                    // of friction, in this step
+    int wait = 0;                       // steps until it may stick
+    int longest = 0;                    // the last such wait
     bool floats = false;                // its planes must be made anew
-    std::int8_t renewals = 0;           // passes asked for because of that, in this step
-    std::int8_t slides = 0;             // times it turned from stick to slide in this step
-    Vec3 friction = Vec3::Zero();       // N s, of this pass
-    double compliance = 0.0;            // m/(N s): slip that an impulse takes away, as far as known
+    int renewals = 0;                   // passes asked for because of that, in this step
+    double hold = 0.0;                  // N s: sum mu lambda
+    Vec3 friction = Vec3::Zero();       // N s
+    double change = 0.0;                // N s: what this pass changed in it
+    double compliance = 0.0;            // m/(N s): slip that friction takes away; 0 if not known yet
     Vec3 last_friction = Vec3::Zero();  // of the pass before
     std::optional<Vec3> last_slip;      // m
-    double change = 0.0;                // N s, of friction to the next pass
   };
   struct Normals;
 
@@ -125,19 +153,29 @@ class SolidContact {
 
   Contact contact_at(Index node, Index solid, const Vec3& x_end, double touch_tolerance) const;
   void keep_contacts(double h, std::span<const Vec3> x_predicted);
-  int add_met(std::span<const Vec3> x_end, double largest_gap);
-  void find_met(const SolidStep& step, std::span<const Vec3> x_end, double largest_gap);
+  template <class Meets>
+  int add_met(std::span<const Vec3> x_end, const Meets& meets);
+  int add_predicted(std::span<const Vec3> x_predicted);
+  bool add_inside(std::span<const Vec3> x_end);
+  bool drop_released();
   void group();
+  void recall(TouchedNode& touched, std::size_t kept) const;
+  double depth_tolerance(const SolidStep& step) const;
   void renew_planes(std::span<const Vec3> x_end);
-  void start_friction(std::span<const Vec3> x_predicted);
+  void renew_planes(TouchedNode& touched, const Vec3& x_end);
+
   Vec3 slip_of(const Contact& contact, const Normals& normals, const Vec3& x_end) const;
-  bool slips(const TouchedNode& touched, const Normals& normals, const Vec3& x_end) const;
-  Vec3 friction_of(const TouchedNode& touched, const Normals& normals, const Vec3& x_end, const Vec3& without) const;
+  bool rides(const TouchedNode& touched, const Normals& normals, const Vec3& x_end) const;
+  double hold_of(const TouchedNode& touched) const;
+  Vec3 sliding_friction(const TouchedNode& touched, const Normals& normals, const Vec3& x_end, const Vec3& taken) const;
+  Vec3 renewed_friction(const TouchedNode& touched, const Normals& normals, const Vec3& x_end) const;
+  void start_fresh(std::span<const Vec3> x_end);
   void judge(TouchedNode& touched, const Vec3& x_end, const Vec3& impulse, double negligible);
   void judge_stick(TouchedNode& touched, const Vec3& tangential, double negligible);
   void judge_slide(TouchedNode& touched, const Normals& normals, const Vec3& x_end);
-  int drop_released();
+  static void learn_compliance(TouchedNode& touched, const Vec3& slip);
   void fill_impulses();
+  void settle(TouchedNode& touched);
   bool move_out(Index node, Vec3& x_end, double& depth) const;
   void remember();
 

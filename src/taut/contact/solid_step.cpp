@@ -8,7 +8,7 @@ namespace taut {
 namespace {
 
 // A node on a ball may float by this share of the radius: it is outside, and the next step's plane takes it down again.
-constexpr double floating_share = 1e-4;
+constexpr double floating_share = 2e-4;
 // Cosine between normals beyond which two points count as on opposite sides: a path that only cuts a corner or a cap is no passage.
 constexpr double other_side = -0.5;
 
