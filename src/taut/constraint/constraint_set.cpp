@@ -76,6 +76,13 @@ void ConstraintSet::fix(Index i, const Vec3& displacement) {
   displacement_[i] = displacement;
 }
 
+void ConstraintSet::set_frame(Index i, int ndof, const Mat3& frame) {
+  assert(ndof >= 0 && ndof <= 3 && (frame.transpose() * frame - Mat3::Identity()).norm() < 1e-9);
+  ndof_[i] = static_cast<std::int8_t>(ndof);
+  frame_[i] = ndof == 1 || ndof == 2 ? frame : Mat3(Mat3::Identity());
+  displacement_[i].setZero();
+}
+
 Mat3 ConstraintSet::projection(Index i) const {
   switch (ndof_[i]) {
     case 3: return Mat3::Identity();

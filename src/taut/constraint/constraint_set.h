@@ -45,6 +45,8 @@ class ConstraintSet {
   void constrain(Index node, const Vec3& n, double distance);
   // d = displacement (m).
   void fix(Index node, const Vec3& displacement);
+  // A node whose U_i is known already (read from a file): the first `ndof` columns of the rotation `frame`. d = 0. With ndof 3 or 0 the frame is I.
+  void set_frame(Index node, int ndof, const Mat3& frame);
 
   Index nodes() const { return static_cast<Index>(ndof_.size()); }
   int ndof(Index i) const { return ndof_[i]; }
