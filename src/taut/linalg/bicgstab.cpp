@@ -81,7 +81,8 @@ KrylovResult bicgstab(const LinearOperator& a, const Preconditioner& m, std::spa
   const std::vector<double> zero(n);
   Run run{a, m, b, x, options, b_norm, result, zero, zero, zero, zero, zero, zero, zero};
   result.start_value = result.stop_value = run.true_residual();
-  for (int restart = 0; result.stop_value > options.relative_tolerance && result.iterations < options.max_iterations; ++restart) {
+  // Written so that a NaN goes into the loop and is reported there.
+  for (int restart = 0; !(result.stop_value <= options.relative_tolerance) && result.iterations < options.max_iterations; ++restart) {
     if (restart > max_restarts) {
       result.status = {Outcome::breakdown, fmt::format("BiCGSTAB broke down {} times; residual {:.3g} after {} iterations", restart,
                                                        result.stop_value, result.iterations)};
@@ -94,7 +95,7 @@ KrylovResult bicgstab(const LinearOperator& a, const Preconditioner& m, std::spa
       return result;
     }
   }
-  if (result.stop_value > options.relative_tolerance)
+  if (!(result.stop_value <= options.relative_tolerance))
     result.status = {Outcome::max_iterations, fmt::format("{} iterations reach {:.3g}, not {:.3g}", result.iterations, result.stop_value,
                                                           options.relative_tolerance)};
   return result;

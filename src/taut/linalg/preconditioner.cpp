@@ -8,6 +8,7 @@
 
 #include "taut/base/parallel.h"
 #include "taut/base/simd.h"
+#include "taut/linalg/vector_ops.h"
 
 namespace taut {
 
@@ -24,6 +25,15 @@ TAUT_MULTIVERSION void scale_kernel(const double* s, const double* r, double* z,
 Status bad_diagonal(Index i, double value) {
   const Outcome outcome = std::isfinite(value) ? Outcome::not_positive_definite : Outcome::not_finite;
   return {outcome, fmt::format("diagonal entry of unknown {} is {}; it must be positive and finite", i, value)};
+}
+
+Status bad_block(const BlockCsr& a, Index node) {
+  const BlockPattern& p = *a.pattern;
+  const double* block = a.block(node, p.diagonal[node]);
+  for (Index r = 0; r < p.dim(node); ++r)
+    if (!all_finite({block + r * p.width(node), static_cast<std::size_t>(p.dim(node))}))
+      return {Outcome::not_finite, fmt::format("the diagonal block of node {} is not finite", node)};
+  return {Outcome::not_positive_definite, fmt::format("the diagonal block of node {} is not positive definite", node)};
 }
 
 template <int dim>
@@ -71,8 +81,7 @@ Status BlockDiagonalPreconditioner::update(const BlockCsr& a) {
   const BlockPattern& p = *pattern_;
   inverse_.assign(9 * static_cast<std::size_t>(p.rows()), 0.0);
   for (Index i = 0; i < p.rows(); ++i)
-    if (!invert_small(a.block(i, p.diagonal[i]), p.width(i), p.dim(i), &inverse_[9 * static_cast<std::size_t>(i)]))
-      return {Outcome::not_positive_definite, fmt::format("the diagonal block of node {} is not positive definite", i)};
+    if (!invert_small(a.block(i, p.diagonal[i]), p.width(i), p.dim(i), &inverse_[9 * static_cast<std::size_t>(i)])) return bad_block(a, i);
   return {};
 }
 
