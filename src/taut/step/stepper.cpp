@@ -48,6 +48,7 @@ SolveSummary Stepper::solve(const ConstraintSet& constraints, std::span<const Ve
   assert(state_);
   constraints_ = &constraints;
   rhs_ = b_;
+  given_.assign(impulses.begin(), impulses.end());
   const double per_impulse = integrator_->rhs_per_impulse(*state_, h_);
   for (std::size_t i = 0; i < impulses.size(); ++i) rhs_[i] += per_impulse * impulses[i];
   integrator_->prescribe(constraints, *state_, h_, z_);

@@ -40,6 +40,8 @@ class Stepper {
   std::span<const std::uint8_t> core_mask() const { return core_; }
   Index core_springs() const { return core_springs_; }
   std::span<const Vec3> unknown() const { return unknown_; }
+  // The impulses that the last solve was given, N s; empty if none.
+  std::span<const Vec3> impulses() const { return given_; }
   const Integrator& integrator() const { return *integrator_; }
   const ExternalForces& external() const { return external_; }
   Assembler& assembler() { return assembler_; }
@@ -62,7 +64,7 @@ class Stepper {
   const ConstraintSet* constraints_ = nullptr;
   double h_ = 0.0, assemble_ms_ = 0.0;
   BlockCsr a_;
-  std::vector<Vec3> b_, rhs_, z_, guess_, unknown_, x_end_, v_end_, impulse_;
+  std::vector<Vec3> b_, rhs_, z_, guess_, unknown_, x_end_, v_end_, impulse_, given_;
 };
 
 }  // namespace taut
