@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace taut {
 
@@ -19,11 +20,15 @@ void hold_blas_to_one_thread() {
 Status status_from(const cholmod_common& common, const char* phase) {
   switch (common.status) {
     case CHOLMOD_OK:
-    case CHOLMOD_DSMALL: return {};
-    case CHOLMOD_NOT_POSDEF: return {Outcome::not_positive_definite, fmt::format("CHOLMOD, {}: the matrix is not positive definite", phase)};
+    case CHOLMOD_DSMALL:
+      return {};
+    case CHOLMOD_NOT_POSDEF:
+      return {Outcome::not_positive_definite, fmt::format("CHOLMOD, {}: the matrix is not positive definite", phase)};
     case CHOLMOD_OUT_OF_MEMORY:
-    case CHOLMOD_TOO_LARGE: return {Outcome::out_of_memory, fmt::format("CHOLMOD, {}: not enough memory", phase)};
-    default: return {Outcome::breakdown, fmt::format("CHOLMOD, {}: status {}", phase, common.status)};
+    case CHOLMOD_TOO_LARGE:
+      return {Outcome::out_of_memory, fmt::format("CHOLMOD, {}: not enough memory", phase)};
+    default:
+      return {Outcome::breakdown, fmt::format("CHOLMOD, {}: status {}", phase, common.status)};
   }
 }
 
@@ -52,6 +57,28 @@ struct CholmodCholesky::Implementation {
     if (factor) cholmod_free_factor(&factor, &common);
   }
 
+  // The first column whose pivot is not positive and finite, or n. CHOLMOD itself stops only at zero pivots of L D Lᵀ, and lets NaN pass.
+  std::size_t first_bad_column() const {
+    const auto good = [](double pivot) { return pivot > 0.0 && std::isfinite(pivot); };
+    const double* x = static_cast<const double*>(factor->x);
+    if (!factor->is_super) {
+      const auto* start = static_cast<const Index*>(factor->p);  // the pivot comes first in its column
+      for (std::size_t j = 0; j < factor->n; ++j)
+        if (!good(x[start[j]])) return j;
+      return factor->n;
+    }
+    const auto *first = static_cast<const Index*>(factor->super), *row_start = static_cast<const Index*>(factor->pi),
+               *value_start = static_cast<const Index*>(factor->px);
+    for (std::size_t s = 0; s < factor->nsuper; ++s) {
+      const std::ptrdiff_t rows = row_start[s + 1] - row_start[s];
+      for (Index j = first[s]; j < first[s + 1]; ++j)
+        if (!good(x[value_start[s] + (j - first[s]) * (rows + 1)])) return static_cast<std::size_t>(j);
+    }
+    return factor->n;
+  }
+
+  bool empty() const { return csc.row.empty(); }
+
   cholmod_sparse view() {
     cholmod_sparse a{};
     a.nrow = a.ncol = csc.column_start.size() - 1;
@@ -69,13 +96,15 @@ struct CholmodCholesky::Implementation {
   }
 
   Status solve(int system, std::span<const double> b, std::span<double> x) {
+    if (empty()) return {};
     cholmod_dense rhs{};
     rhs.nrow = rhs.d = rhs.nzmax = b.size();
     rhs.ncol = 1;
     rhs.x = const_cast<double*>(b.data());
     rhs.xtype = CHOLMOD_REAL;
     rhs.dtype = CHOLMOD_DOUBLE;
-    if (!cholmod_solve2(system, factor, &rhs, nullptr, &solution, nullptr, &workspace_y, &workspace_e, &common)) return status_from(common, "solve");
+    if (!cholmod_solve2(system, factor, &rhs, nullptr, &solution, nullptr, &workspace_y, &workspace_e, &common))
+      return status_from(common, "solve");
     const double* values = static_cast<const double*>(solution->x);
     std::copy(values, values + x.size(), x.begin());
     return {};
@@ -89,6 +118,7 @@ Status CholmodCholesky::analyze(const BlockCsr& a) {
   Implementation& me = *implementation_;
   me.release_factor();
   lower_triangle(a, me.csc);
+  if (me.empty()) return {};  // CHOLMOD takes no null pointers, which is what empty arrays have
   cholmod_sparse view = me.view();
   me.factor = cholmod_analyze(&view, &me.common);
   return me.factor ? Status{} : status_from(me.common, "analysis");
@@ -97,19 +127,25 @@ Status CholmodCholesky::analyze(const BlockCsr& a) {
 Status CholmodCholesky::factorize(const BlockCsr& a) {
   Implementation& me = *implementation_;
   lower_triangle(a, me.csc);
+  if (me.empty()) return {};
   cholmod_sparse view = me.view();
   cholmod_factorize(&view, me.factor, &me.common);
   Status status = status_from(me.common, "factorisation");
+  std::size_t bad = me.factor->n;
   if (status.outcome == Outcome::not_positive_definite) {
-    const Index unknown = permutation()[std::min(me.factor->minor, me.factor->n - 1)];
-    status.message += fmt::format(" (found at unknown {})", unknown);
+    bad = std::min(me.factor->minor, me.factor->n - 1);
+  } else if (status.ok() && (bad = me.first_bad_column()) < me.factor->n) {
+    status = {Outcome::not_positive_definite, "CHOLMOD, factorisation: the matrix is not positive definite"};
   }
+  if (bad < me.factor->n) status.message += fmt::format(" (found at unknown {})", permutation()[bad]);
   return status;
 }
 
 Status CholmodCholesky::solve(std::span<const double> b, std::span<double> x) { return implementation_->solve(CHOLMOD_A, b, x); }
 
-Status CholmodCholesky::solve_permuted(std::span<const double> b, std::span<double> x) { return implementation_->solve(CHOLMOD_LDLt, b, x); }
+Status CholmodCholesky::solve_permuted(std::span<const double> b, std::span<double> x) {
+  return implementation_->solve(CHOLMOD_LDLt, b, x);
+}
 
 std::span<const Index> CholmodCholesky::permutation() const {
   const cholmod_factor* factor = implementation_->factor;
