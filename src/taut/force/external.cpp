@@ -31,7 +31,8 @@ void ExternalForces::evaluate(double time, std::span<const Vec3> x, std::span<co
       const Vec3 doubled = (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]);  // 2 A n
       const double twice_area = doubled.norm();
       if (twice_area == 0.0) continue;
-      const Mat3 share = surface.pressure / (6.0 * twice_area) * doubled * doubled.transpose();
+      const Mat3 outer = doubled * doubled.transpose();  // scaled afterwards: symmetric to the last bit, as A must be
+      const Mat3 share = surface.pressure / (6.0 * twice_area) * outer;
       for (const Index node : t) damping_[node] += share;
     }
   parallel_for(n, 4096, [&](Index begin, Index end) {

@@ -8,44 +8,56 @@ namespace taut {
 
 namespace {
 
-// cos u - sinc u, by its series where the difference would cancel: -u²/3 + u⁴/30 - u⁶/840 + u⁸/45360.
-double cos_minus_sinc(double u) {
-  if (u > 0.3) return std::cos(u) - std::sin(u) / u;
+// Below this u the differences below cancel and their series, cut after the last term given, are exact to rounding.
+constexpr double series_limit = 0.3;
+
+// w / u², w = cos u - sinc u. The series of w: sum over k of (-1)^k 2k/(2k+1)! u^2k.
+double scaled_cos_minus_sinc(double u) {
   const double u2 = u * u;
-  return u2 * (-1.0 / 3.0 + u2 * (1.0 / 30.0 + u2 * (-1.0 / 840.0 + u2 * (1.0 / 45360.0 - u2 / 3991680.0))));
+  if (u > series_limit) return (std::cos(u) - std::sin(u) / u) / u2;
+  return -1.0 / 3.0 + u2 * (1.0 / 30.0 + u2 * (-1.0 / 840.0 + u2 * (1.0 / 45360.0 - u2 / 3991680.0)));
+}
+
+double cos_minus_sinc(double u) { return u * u * scaled_cos_minus_sinc(u); }
+
+// (3 u w + u² sin u) / u⁵: how u²/w changes with u, times w²/u⁵. Its series: sum over k of (-1)^(k-1) 2k (2k-2)/(2k+1)! u^(2k-4), k from 2.
+double scaled_slope_numerator(double u) {
+  const double u2 = u * u;
+  if (u > series_limit) return (3.0 * cos_minus_sinc(u) + u * std::sin(u)) / (u2 * u2);
+  return -1.0 / 15.0 + u2 * (1.0 / 210.0 + u2 * (-1.0 / 7560.0 + u2 * (1.0 / 498960.0 - u2 / 51891840.0)));
 }
 
 struct Buckled {
   double u, tension, slope;
 };
 
+// f_b = 4 k_b/L0² u²/w and du/dL = u/(L0 w), both without a division by zero at u = 0.
 Buckled buckled_beam(const SpringParameters& p, double length) {
   const double l0 = p.rest_length;
   const double u = inverse_sinc(std::clamp(length / l0, 0.0, 1.0));
   const double scale = 4.0 * p.stiffness / (l0 * l0);
-  if (u < 1e-4) {
-    // g(u) = u²/(cos u - sinc u) = -3 - 3u²/10 + ...,  du/dL = u / (L0 (cos u - sinc u)) = -3/(L0 u):  g' du/dL = (9/5)/L0
-    return {u, scale * (-3.0 - 0.3 * u * u), scale * 1.8 / l0};
-  }
-  const double w = cos_minus_sinc(u);
-  const double g = u * u / w;
-  const double dg_du = (3.0 * u * w + u * u * std::sin(u)) / (w * w);
-  return {u, scale * g, scale * dg_du * u / (l0 * w)};
+  const double w = scaled_cos_minus_sinc(u);
+  return {u, scale / w, scale * scaled_slope_numerator(u) / (l0 * w * w * w)};
 }
 
 double beam_energy(const SpringParameters& p, double u) { return 2.0 * p.stiffness * u * u / p.rest_length; }
 
 }  // namespace
 
-double crossing_length(const SpringParameters& p) {
-  double low = 0.0, high = p.rest_length;
+BeamRange beam_range(const SpringParameters& p) {
+  // L/L0 where the beam pushes least in proportion to L0 - L. A line that is weaker there is weaker everywhere.
+  constexpr double weakest = 0.27948525989761236;
   const auto beam_is_weaker = [&](double length) { return buckled_beam(p, length).tension >= p.cap * (length - p.rest_length); };
-  if (!beam_is_weaker(low)) return 0.0;
-  for (int i = 0; i < 100; ++i) {
-    const double middle = 0.5 * (low + high);
-    (beam_is_weaker(middle) ? low : high) = middle;
-  }
-  return low;
+  const auto boundary = [&](double inside, double outside) {
+    for (int i = 0; i < 100; ++i) {
+      const double middle = 0.5 * (inside + outside);
+      (beam_is_weaker(middle) ? inside : outside) = middle;
+    }
+    return inside;
+  };
+  const double seen = weakest * p.rest_length;
+  if (!beam_is_weaker(seen)) return {0.0, 0.0};
+  return {beam_is_weaker(0.0) ? 0.0 : boundary(seen, 0.0), boundary(seen, p.rest_length)};
 }
 
 double inverse_sinc(double s) {
@@ -85,10 +97,13 @@ double spring_energy(SpringLawKind law, const SpringParameters& p, double length
   if (law != SpringLawKind::choi_ko) return law == SpringLawKind::buckling && stretch < 0.0 ? 0.0 : 0.5 * p.stiffness * stretch * stretch;
   const double line = 0.5 * p.cap * stretch * stretch;
   if (stretch >= 0.0) return line;
-  const double crossing = p.crossing >= 0.0 ? p.crossing : crossing_length(p);
-  if (length >= crossing) return line;
-  const double at_crossing = 0.5 * p.cap * (crossing - p.rest_length) * (crossing - p.rest_length);
-  return at_crossing + beam_energy(p, buckled_beam(p, length).u) - beam_energy(p, buckled_beam(p, crossing).u);
+  const BeamRange beam = p.beam.known() ? p.beam : beam_range(p);
+  if (length >= beam.upper) return line;
+  // The line's work outside the range, the beam's inside.
+  const auto line_energy = [&](double at) { return 0.5 * p.cap * (at - p.rest_length) * (at - p.rest_length); };
+  const auto energy_of_beam = [&](double at) { return beam_energy(p, buckled_beam(p, at).u); };
+  const double in_range = std::max(length, beam.lower);
+  return line_energy(beam.upper) + energy_of_beam(in_range) - energy_of_beam(beam.upper) + (line - line_energy(in_range));
 }
 
 SpringResponse spring_response(SpringLawKind law, const SpringParameters& p, const Vec3& d, const Vec3& relative_velocity) {

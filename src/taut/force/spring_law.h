@@ -21,21 +21,28 @@ namespace taut {
 
 enum class SpringLawKind { linear, buckling, choi_ko };
 
+// choi_ko: the lengths between which the beam pushes less than the line c_b (L - L0) would: in general from 0 to somewhat below L0. A line
+// with c_b L0³/k_b < 31.47 is weaker at every length (upper = 0), one between that and 4π² also near L = 0 (lower > 0).
+struct BeamRange {
+  double lower = 0.0, upper = -1.0;  // m; upper negative: not known
+  bool known() const { return upper >= 0.0; }
+  bool operator==(const BeamRange&) const = default;
+};
+
 struct SpringParameters {
   double rest_length = 1.0;  // m
   double stiffness = 0.0;    // N/m; N·m² for choi_ko
   double damping = 0.0;      // N s/m
   double cap = 0.0;          // c_b, N/m; choi_ko only
-  double crossing = -1.0;    // m: length where line and beam push equally, see crossing_length(); negative: found when needed (slow)
+  BeamRange beam = {};       // choi_ko only; found when needed (slow) if not known
   bool operator==(const SpringParameters&) const = default;
 };
-// choi_ko: the length below which the beam pushes less than the line c_b (L - L0) would; 0 if it never does.
-double crossing_length(const SpringParameters& p);
+BeamRange beam_range(const SpringParameters& p);
 
 // T and T' at length L.
 struct SpringTension {
-  double tension = 0.0;    // N
-  double slope = 0.0;      // N/m
+  double tension = 0.0;  // N
+  double slope = 0.0;    // N/m
   bool slack = true;
 };
 SpringTension spring_tension(SpringLawKind law, const SpringParameters& p, double length);
@@ -44,12 +51,12 @@ double spring_energy(SpringLawKind law, const SpringParameters& p, double length
 
 // Force and the two Jacobians of node i; those of j follow by sign.
 struct SpringResponse {
-  double energy = 0.0;         // J
-  Vec3 force = Vec3::Zero();   // on i, N
-  Mat3 stiffness = Mat3::Zero();            // K_s as used
-  Mat3 damping = Mat3::Zero();              // D_s
-  Mat3 dropped_transverse = Mat3::Zero();   // exact elastic minus used
-  Mat3 dropped_damping = Mat3::Zero();      // -d(damping force)/dx, dropped
+  double energy = 0.0;                     // J
+  Vec3 force = Vec3::Zero();               // on i, N
+  Mat3 stiffness = Mat3::Zero();           // K_s as used
+  Mat3 damping = Mat3::Zero();             // D_s
+  Mat3 dropped_transverse = Mat3::Zero();  // exact elastic minus used
+  Mat3 dropped_damping = Mat3::Zero();     // -d(damping force)/dx, dropped
   Mat3 exact_stiffness() const { return stiffness + dropped_transverse + dropped_damping; }
 };
 // The readable form, for tests, dumps and small tools; springs.cpp evaluates the same formulas in bulk.

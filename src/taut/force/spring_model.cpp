@@ -73,8 +73,8 @@ SpringModel::SpringModel(ForceClass force_class, SpringLawKind law, std::vector<
   SpringParameters last;
   for (Spring& s : springs_) {
     SpringParameters own = s.parameters;
-    own.crossing = last.crossing;
-    if (!(own == last)) own.crossing = crossing_length(s.parameters);
+    own.beam = last.beam;
+    if (!(own == last)) own.beam = beam_range(s.parameters);
     s.parameters = last = own;
   }
 }
