@@ -20,6 +20,9 @@ int main(int argc, char** argv) {
   taut::app::add_run_verb(app, exit_code);
   taut::app::add_resume_verb(app, exit_code);
   taut::app::add_check_verb(app, exit_code);
+  taut::app::add_bench_verb(app, exit_code);
+  taut::app::add_dump_verb(app, exit_code);
+  taut::app::add_solve_verb(app, exit_code);
   taut::app::add_export_verb(app, exit_code);
   try {
     app.parse(argc, argv);

@@ -9,6 +9,9 @@ namespace taut::app {
 void add_run_verb(CLI::App& app, int& exit_code);
 void add_resume_verb(CLI::App& app, int& exit_code);
 void add_check_verb(CLI::App& app, int& exit_code);
+void add_bench_verb(CLI::App& app, int& exit_code);
+void add_dump_verb(CLI::App& app, int& exit_code);
+void add_solve_verb(CLI::App& app, int& exit_code);
 void add_export_verb(CLI::App& app, int& exit_code);
 
 }  // namespace taut::app

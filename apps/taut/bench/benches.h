@@ -1,0 +1,25 @@
+#pragma once
+// The benches of `taut bench`. Each prints its table as it goes and returns its rows.
+
+#include <string>
+#include <vector>
+
+#include "bench/report.h"
+
+namespace taut::app {
+
+struct BenchOptions {
+  std::string scenes = "scenes";     // folder of ball.toml, pinned.toml, drape.toml
+  int steps = 20;
+  double tolerance = 1e-3;
+  std::vector<int> nodes;            // table2: 1681, 6561, 25921; empty: all
+  std::vector<int> stiffnesses;      // 60, 600, 6000; empty: all
+  int equal_error_every = 5;
+};
+
+// Paper, Table 1: MPCG against uPCG on few and on many constraints, 6,561 nodes, h = 3.67 ms.
+std::vector<ReportRow> bench_table1(const BenchOptions& options);
+// Paper, Table 2: a ball hits a sheet; MPCG, CHOLMOD and corePCG for three sizes and stiffnesses, semi-implicit Euler and IMEX matrices.
+std::vector<ReportRow> bench_table2(const BenchOptions& options);
+
+}  // namespace taut::app

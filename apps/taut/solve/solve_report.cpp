@@ -1,0 +1,88 @@
+#include "solve/solve_report.h"
+
+#include <fmt/format.h>
+
+#include "bench/machine.h"
+#include "bench/table.h"
+#include "taut/base/file.h"
+#include "taut/base/parallel.h"
+
+namespace taut::app {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double setup_ms(const SolveSummary& s) { return s.reduce_ms + s.order_ms + s.factor_ms; }
+
+std::string error_text(double error) { return error < 0.0 ? "" : fmt::format("{:.2e}", error); }
+
+// JSON has no NaN and no infinity.
+void put_finite(Json& json, const char* key, double value) {
+  if (std::isfinite(value)) json[key] = value;
+}
+
+Json row_json(const SolverRow& row, const Json& facts, double reference_ms) {
+  const SolveSummary& s = row.summary;
+  Json json = facts;
+  json["solver"] = s.solver;
+  json["threads"] = thread_count();
+  json["status"] = name_of(s.status.outcome);
+  if (!s.status.message.empty()) json["message"] = s.status.message;
+  if (!s.remark.empty()) json["remark"] = s.remark;
+  json["iterations"] = s.iterations;
+  json["setup_ms"] = setup_ms(s);
+  json["solve_ms"] = s.solve_ms;
+  json["total_ms"] = s.total_ms();
+  if (reference_ms > 0.0) json["ratio_to_cholmod_full"] = s.total_ms() / reference_ms;
+  if (row.anorm_error >= 0.0) put_finite(json, "anorm_error", row.anorm_error);
+  put_finite(json, "relative_residual", s.relative_residual);
+  json["memory_MB"] = s.memory_bytes / 1e6;
+  json["precision"] = "double";
+  return json;
+}
+
+}  // namespace
+
+std::string solve_table(const std::vector<SolverRow>& rows) {
+  TextTable table({"solver", "status", "iterations", "setup ms", "solve ms", "memory MB", "residual", "A-norm error"});
+  for (const auto& [s, error] : rows)
+    table.add({s.solver, name_of(s.status.outcome), std::to_string(s.iterations), fmt::format("{:.2f}", setup_ms(s)),
+               fmt::format("{:.2f}", s.solve_ms), fmt::format("{:.2f}", s.memory_bytes / 1e6), fmt::format("{:.2e}", s.relative_residual),
+               error_text(error)});
+  return table.text();
+}
+
+Json solve_json(const std::vector<SolverRow>& rows, const Json& facts) {
+  double reference_ms = 0.0;
+  for (const SolverRow& row : rows)
+    if (row.summary.solver == "cholmod" && row.summary.status.ok()) reference_ms = row.summary.total_ms();
+  Json json{{"machine", to_json(machine_facts(false))}, {"rows", Json::array()}};
+  for (const SolverRow& row : rows) json["rows"].push_back(row_json(row, facts, reference_ms));
+  return json;
+}
+
+Json dump_facts(const std::string& meta_file) {
+  const Json meta = Json::parse(read_file(meta_file), nullptr, false);
+  Json facts = Json::object();
+  if (!meta.is_object()) return facts;
+  if (meta.contains("title")) facts["scene"] = meta["title"];
+  if (meta.contains("nodes")) facts["nodes"] = meta["nodes"];
+  // With several cloths there is no one stiffness.
+  if (meta.contains("cloths") && meta["cloths"].is_array() && meta["cloths"].size() == 1)
+    for (const char* key : {"k_stretch", "k_shear", "k_bend"})
+      if (meta["cloths"][0].contains(key)) facts[key] = meta["cloths"][0][key];
+  for (const char* key : {"h", "integrator"})
+    if (meta.contains(key)) facts[key] = meta[key];
+  return facts;
+}
+
+std::string history_csv(const std::vector<HistoryPoint>& points) {
+  std::string text = "solver,iteration,stop_value,residual,anorm_error\n";
+  for (const HistoryPoint& p : points)
+    fmt::format_to(std::back_inserter(text), "{},{},{:.9g},{:.9g},{}\n", p.solver, p.iteration, p.stop_value, p.residual,
+                   p.anorm_error < 0.0 ? "" : fmt::format("{:.9g}", p.anorm_error));
+  return text;
+}
+
+}  // namespace taut::app

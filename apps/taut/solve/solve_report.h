@@ -1,0 +1,19 @@
+#pragma once
+// What `taut solve` prints and writes.
+
+#include <nlohmann/json.hpp>
+
+#include "solve/measure_solvers.h"
+
+namespace taut::app {
+
+// The table that people read.
+std::string solve_table(const std::vector<SolverRow>& rows);
+// {"machine": ..., "rows": [...]}; `facts`: keys that all rows share (scene, nodes, h, ...).
+nlohmann::ordered_json solve_json(const std::vector<SolverRow>& rows, const nlohmann::ordered_json& facts);
+// What meta.json of a dump says about the system: scene, nodes, k_stretch, k_shear, k_bend, h, integrator. {} when it says nothing.
+nlohmann::ordered_json dump_facts(const std::string& meta_file);
+// solver,iteration,stop_value,residual,anorm_error
+std::string history_csv(const std::vector<HistoryPoint>& points);
+
+}  // namespace taut::app
