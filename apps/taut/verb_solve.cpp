@@ -69,13 +69,18 @@ void write_histories(const SolveArguments& arguments, const std::vector<std::str
   write_file(arguments.history, history_csv(points));
 }
 
+// A wrong name is bad usage, told before minutes of reading and solving.
+void check_solver_names(const SolveArguments& arguments) try {
+  SolverOptions options = arguments.options;
+  for (const std::string& name : arguments.solvers) options.name = name, make_solver(options);
+} catch (const InputError& error) {
+  throw CLI::ValidationError("--solver", error.what());
+}
+
 int solve(const SolveArguments& arguments) {
   if (arguments.threads > 0) set_thread_count(arguments.threads);
   const std::vector<std::string> names = chosen_solvers(arguments);
   SolverOptions options = arguments.options;
-  // A wrong name is told before minutes of reading and solving.
-  for (const std::string& name : names) options.name = name, make_solver(options);
-
   const StoredSystem stored(chosen_files(arguments));
   const LinearSystem system = stored.system();
   const Reference reference = make_reference(system);
@@ -145,6 +150,7 @@ void add_solve_verb(CLI::App& app, int& exit_code) {
       throw CLI::RequiredError(std::filesystem::is_directory(arguments->json) ? "DIR (it was taken for the FILE of --json: put DIR first)"
                                                                               : "DIR or --matrix");
     arguments->wants_json = json->count() > 0;
+    check_solver_names(*arguments);
     exit_code = solve(*arguments);
   });
 }
