@@ -36,7 +36,7 @@ class Integrator {
   virtual void prescribe(const ConstraintSet& constraints, const State& state, double h, std::span<Vec3> z) const = 0;
   // Positions and velocities at the end of the step.
   virtual void finish(const State& state, double h, std::span<const Vec3> unknown, std::span<Vec3> x_end, std::span<Vec3> v_end) const = 0;
-  // One N s of impulse on a node adds this much to b; and (A u - b) divided by it is an impulse.
+  // One N s of impulse on a node, spread over the step, adds this much to b; and (A u - b) divided by it is an impulse: h times the mean force.
   virtual double rhs_per_impulse(const State& state, double h) const = 0;
   // A's coefficients of D and K, for dumps and the core's bound.
   virtual double damping_coefficient(const State& state, double h) const = 0;
