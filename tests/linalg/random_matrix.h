@@ -65,19 +65,19 @@ inline BlockCsr random_matrix(Random& random, std::shared_ptr<const BlockPattern
   return a;
 }
 
-// Symmetric; diagonally dominant by `margin` on average, so that its condition number is of the order 1/margin.
+// Symmetric and diagonally dominant by a share of `margin`. But for the signs of the unknowns it is the Laplacian of a graph, so that its
+// condition number really is of the order of 1/margin.
 inline BlockCsr random_spd(Random& random, std::shared_ptr<const BlockPattern> pattern, double margin = 0.05) {
   BlockCsr a(std::move(pattern));
-  std::vector<double> row_sum(static_cast<std::size_t>(a.dofs()), 0.0);
+  std::vector<double> row_sum(static_cast<std::size_t>(a.dofs()), 0.0), sign(row_sum);
+  for (double& s : sign) s = random.below(2) ? 1.0 : -1.0;
   for_each_entry(a, [&](Index row, Index column, double& value) {
-    if (row > column)
-      value = a.at(column, row);
-    else if (row < column)
-      value = random.uniform();
-    if (row != column) row_sum[row] += std::abs(value);
+    if (row == column) return;
+    value = row > column ? a.at(column, row) : -sign[row] * sign[column] * random.uniform(0.0, 1.0);
+    row_sum[row] += std::abs(value);
   });
   for_each_entry(a, [&](Index row, Index column, double& value) {
-    if (row == column) value = (row_sum[row] + 1.0) * (1.0 + margin * random.uniform(0.0, 2.0)) + random.uniform(0.0, 3.0);
+    if (row == column) value = row_sum[row] * (1.0 + margin * random.uniform(0.0, 2.0)) + margin;
   });
   return a;
 }

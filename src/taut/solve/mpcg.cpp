@@ -61,6 +61,12 @@ void Mpcg::run(const LinearSystem& system, std::span<double> x, SolveSummary& su
   }
   m.apply(b_hat, s_);
   const double delta0 = dot(b_hat, s_);
+  if (delta0 == 0.0) {
+    // Nothing drives the system: x = (I-S) z, and no guess can be improved on relative to nothing.
+    LinearSystem undriven = system;
+    undriven.guess = {};
+    return initial_guess(undriven, x);
+  }
 
   multiply(a, x, r_);
   residual_from_product(system.rhs, r_);
@@ -70,7 +76,7 @@ void Mpcg::run(const LinearSystem& system, std::span<double> x, SolveSummary& su
   double delta = dot(r_, c_);
   const double limit = options_.tolerance * options_.tolerance * delta0;
   const int max_iterations = iteration_limit(static_cast<Index>(n));
-  const auto relative = [&](double d) { return delta0 > 0.0 ? std::sqrt(std::abs(d / delta0)) : 0.0; };
+  const auto relative = [&](double d) { return std::sqrt(std::abs(d / delta0)); };
   summary.start_value = relative(delta);
 
   double curvature = 1.0;

@@ -95,6 +95,14 @@ SolveSummary ConstrainedSolver::solve(const LinearSystem& system, std::span<doub
     initial_guess(system, x);
     return summary;
   }
+  if (!all_finite(system.guess)) {
+    LinearSystem unguessed = system;
+    unguessed.guess = {};
+    summary = solve(unguessed, x);
+    summary.remark += summary.remark.empty() ? "" : "; ";
+    summary.remark += "the initial guess held NaN or infinity and was left out";
+    return summary;
+  }
   run(system, x, summary);
   summary.relative_residual = relative_residual(system, x);
   if (!std::isfinite(summary.relative_residual) && summary.status.ok()) summary.status = {Outcome::not_finite, "the solution holds NaN or infinity"};
