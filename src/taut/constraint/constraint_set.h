@@ -51,7 +51,7 @@ class ConstraintSet {
   Index nodes() const { return static_cast<Index>(ndof_.size()); }
   int ndof(Index i) const { return ndof_[i]; }
   std::span<const std::int8_t> ndofs() const { return ndof_; }
-  // Columns of U_i: the first ndof(i) columns of this matrix; the others complete it to a rotation and span the constrained directions.
+  // Columns of U_i: the first ndof(i) columns of this matrix; the others complete it to an orthogonal matrix and span the constrained directions.
   const Mat3& frame(Index i) const { return frame_[i]; }
   const Vec3& displacement(Index i) const { return displacement_[i]; }
   // S_i, exactly I or 0 for ndof 3 or 0.
