@@ -171,7 +171,7 @@ TEST_P(Dump, RightHandSideFollowsFromForceAndState) {
     const Vector delta = d.x - d.vector("x_prev"), v_prev = d.vector("v_prev");
     const Matrix damping = d.d_external + springs.d;
     expected = d.m.cwiseProduct(delta / 3 + h / 9 * (8 * d.v - 2 * v_prev)) + 4 * h * h / 9 * (d.f_start + damping * d.v) +
-               2 * h / 9 * (damping * delta) + 2 * h / 3 * d.friction;
+               2 * h / 9 * (damping * delta) + 4 * h / 9 * d.friction;
   } else {
     expected = h * (d.f_start - h * springs.k * d.v) + d.friction;
   }
