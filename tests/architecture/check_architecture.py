@@ -80,10 +80,10 @@ class Checker:
                 self.report(self.rooms_file, 1, f"src/taut/{folder.name} is not declared here with taut_room(...)")
 
     def find(self, path, target):
-        """The project's file that an include names, or None. A program may include its own files by their bare names; a room's never are."""
+        """The project's file that an include names, or None. A program may write its own files from its own folder; a room writes all from src."""
         folders = [self.root / "src", self.root / "src/taut_cholmod"]
         if self.room_of(path) is None:
-            folders.append(path.parent)
+            folders += [path.parent, self.root.joinpath(*path.relative_to(self.root).parts[:2])]
         return next((f / target for f in folders if (f / target).is_file()), None)
 
     def room_of(self, path):
