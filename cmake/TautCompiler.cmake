@@ -14,7 +14,7 @@ elseif(TAUT_SANITIZE)
   message(FATAL_ERROR "TAUT_SANITIZE is '${TAUT_SANITIZE}': use address, thread, or leave it empty")
 endif()
 if(taut_sanitizers)
-  target_compile_options(taut_compile_options INTERFACE ${taut_sanitizers} -O1 -g)
+  target_compile_options(taut_compile_options INTERFACE ${taut_sanitizers} -O1 -g1)
   target_link_options(taut_compile_options INTERFACE ${taut_sanitizers})
 endif()
 
