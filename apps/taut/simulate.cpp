@@ -8,7 +8,7 @@ namespace taut::app {
 
 namespace {
 
-void print_summary(const RunSummary& s, const Simulation& simulation, const ResultsFolder& results) {
+void print_summary(const RunSummary& s, const Simulation& simulation, const ResultsFolder& results, bool picture) {
   const Scene& scene = simulation.scene();
   fmt::print("\n{}\n\n", scene.title);
   const auto row = [](const char* name, const std::string& value) { fmt::print("  {:<22}{}\n", name, value); };
@@ -22,7 +22,7 @@ void print_summary(const RunSummary& s, const Simulation& simulation, const Resu
   if (s.fallbacks > 0) row("fall-backs", fmt::format("{} solves were done directly after the chosen solver failed", s.fallbacks));
   row("peak memory", fmt::format("{:.0f} MB", s.peak_memory_MB));
   fmt::print("\n");
-  row("picture", results.contact_sheet_file().string());
+  if (picture) row("picture", results.contact_sheet_file().string());
   row("frames", (results.folder() / "frames").string());
   row("step by step", results.stats_file().string());
   row("summary", results.summary_file().string());
@@ -31,14 +31,14 @@ void print_summary(const RunSummary& s, const Simulation& simulation, const Resu
 
 }  // namespace
 
-int simulate(Simulation& simulation, const ResultsFolder& results, ProgressStyle style, int first_frame) {
+int simulate(Simulation& simulation, const ResultsFolder& results, const SimulateOptions& options, int first_frame) {
   RunSummary summary;
   {
-    const auto progress = make_progress(style, simulation.scene());
+    const auto progress = make_progress(options.style, simulation.scene());
     summary = run(simulation, results, *progress, interrupt_flag(), first_frame);
   }
-  draw_contact_sheet(simulation, results);
-  if (style == ProgressStyle::automatic) print_summary(summary, simulation, results);
+  if (options.picture) draw_contact_sheet(simulation, results);
+  if (options.style == ProgressStyle::automatic) print_summary(summary, simulation, results, options.picture);
   switch (summary.end) {
     case RunEnd::finished: return 0;
     case RunEnd::interrupted:

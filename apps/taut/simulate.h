@@ -6,7 +6,12 @@
 
 namespace taut::app {
 
+struct SimulateOptions {
+  ProgressStyle style = ProgressStyle::automatic;
+  bool picture = true;  // draw the contact sheet at the end
+};
+
 // Returns the exit code.
-int simulate(Simulation& simulation, const ResultsFolder& results, ProgressStyle style, int first_frame);
+int simulate(Simulation& simulation, const ResultsFolder& results, const SimulateOptions& options, int first_frame);
 
 }  // namespace taut::app

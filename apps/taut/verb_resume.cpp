@@ -9,13 +9,13 @@ namespace taut::app {
 
 namespace {
 
-int resume(const std::string& folder, int threads, bool quiet) {
+int resume(const std::string& folder, int threads, bool quiet, bool picture) {
   if (threads > 0) set_thread_count(threads);
   const ResultsFolder results(folder);
   Simulation simulation(read_scene(results.scene_file()));
   const int frame = results.read_checkpoint(simulation);
   if (!quiet) fmt::print(stderr, "going on after frame {} (step {})\n", frame, simulation.steps_done());
-  return simulate(simulation, results, quiet ? ProgressStyle::quiet : ProgressStyle::automatic, frame);
+  return simulate(simulation, results, {quiet ? ProgressStyle::quiet : ProgressStyle::automatic, picture}, frame);
 }
 
 }  // namespace
@@ -28,8 +28,10 @@ void add_resume_verb(CLI::App& app, int& exit_code) {
   verb->add_option("DIR", *folder, "Results folder of the interrupted run")->required();
   verb->add_option("--threads", *threads, "Threads to use (default: all processors)")->check(CLI::Range(1, 1024));
   verb->add_flag("--quiet", *quiet, "No progress and no table");
+  auto no_picture = std::make_shared<bool>(false);
+  verb->add_flag("--no-picture", *no_picture, "Draw no contact sheet at the end");
   verb->footer("Example: taut resume out/ball");
-  verb->callback([=, &exit_code] { exit_code = resume(*folder, *threads, *quiet); });
+  verb->callback([=, &exit_code] { exit_code = resume(*folder, *threads, *quiet, !*no_picture); });
 }
 
 }  // namespace taut::app

@@ -13,7 +13,7 @@ struct RunArguments {
   std::string scene, out, solver;
   int frames = -1, threads = 0;
   std::vector<std::string> settings;
-  bool quiet = false, json_lines = false;
+  bool quiet = false, json_lines = false, no_picture = false;
 };
 
 int run_scene(const RunArguments& arguments) {
@@ -28,7 +28,7 @@ int run_scene(const RunArguments& arguments) {
   const ResultsFolder results(arguments.out.empty() ? std::filesystem::path("out") / std::filesystem::path(arguments.scene).stem() : std::filesystem::path(arguments.out));
   Simulation simulation(std::move(scene));
   results.start(simulation);
-  return simulate(simulation, results, style, 0);
+  return simulate(simulation, results, {style, !arguments.no_picture}, 0);
 }
 
 }  // namespace
@@ -44,6 +44,7 @@ void add_run_verb(CLI::App& app, int& exit_code) {
   verb->add_option("--set", arguments->settings, "Change a key of the scene: key=value, e.g. cloth.k_stretch=600; may be repeated")->take_all()->type_name("KEY=VALUE");
   verb->add_flag("--quiet", arguments->quiet, "No progress and no table");
   verb->add_flag("--json-lines", arguments->json_lines, "Progress as one JSON object a step on stdout");
+  verb->add_flag("--no-picture", arguments->no_picture, "Draw no contact sheet at the end");
   verb->footer("Example: taut run scenes/ball.toml --set cloth.grid.nodes=[41,41] --out out/small\n"
                "Ctrl-C stops after the current step with everything so far valid; `taut resume DIR` goes on.");
   verb->callback([arguments, &exit_code] { exit_code = run_scene(*arguments); });
