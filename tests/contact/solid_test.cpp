@@ -188,7 +188,8 @@ TEST(SolidStep, anchorIsWhereTheStraightPathEnters) {
 }
 
 TEST(SolidStep, passageThroughThinPlateIsSeen) {
-  const SolidStep step(test::box(Vec3(1, 1, 0.01)), 0.0, 0.01);
+  const Solid plate = test::box(Vec3(1, 1, 0.01));  // a SolidStep keeps a reference to it
+  const SolidStep step(plate, 0.0, 0.01);
   const Vec3 above(0.1, 0.1, 0.03), below(0.15, 0.1, -0.03), beside(0.8, 0.1, -0.03);
   EXPECT_TRUE(step.meets(above, below, 1e-6));
   EXPECT_TRUE(step.meets(below, above, -1e-6));
