@@ -55,6 +55,7 @@ class Reader {
     value(count);
     if (count > bytes_.size() / item) fail();
     items.resize(count);
+    if (count == 0) return;  // an empty list may have no memory, which memcpy must not be given
     std::memcpy(static_cast<void*>(items.data()), bytes_.data(), count * item);
     bytes_.remove_prefix(count * item);
   }
