@@ -2,6 +2,7 @@
 
 #include "taut/scene/simulation.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,6 +25,7 @@ Scene scene_of(const std::string& text, std::vector<std::string> settings = {}) 
 const std::string crowded = R"(
 [time]
 step = 4e-3
+max_halvings = 1
 [[cloth]]
 grid = { nodes = [41, 40], origin = [-0.3, -0.3, 0.205], u = [0.6, 0, 0], v = [0, 0.6, 0] }
 density = 0.15
@@ -192,6 +194,78 @@ TEST(Simulation, ASolverThatGivesUpIsReplacedForThatSolveAndCounted) {
   }
   for (Index i = 0; i < simulation.cloth().nodes(); ++i)
     EXPECT_LT((simulation.state().x[i] - reference.state().x[i]).norm(), 1e-6) << "the direct method gives the same motion";
+}
+
+// A sheet that spins about one held corner, 0.4 rad a step.
+const std::string spinning = R"(
+gravity = [0, 0, 0]
+[time]
+step = 4e-3
+[[cloth]]
+grid = { nodes = [6, 6], u = [0.1, 0, 0], v = [0, 0.1, 0] }
+node_mass = 1e-4
+k_stretch = 2000
+compression = "linear"
+[[cloth.pin]]
+nodes = [0]
+)";
+
+State spin(const Scene& scene, int steps, std::vector<StepRecord>& records) {
+  Simulation simulation(scene);
+  State state = simulation.state();
+  for (std::size_t i = 0; i < state.x.size(); ++i) state.v[i] = Vec3(0, 0, 100).cross(state.x[i]);
+  simulation.restore(state, simulation.contact().state(), 0);
+  records.assign(static_cast<std::size_t>(steps), {});
+  for (StepRecord& record : records) {
+    const Status status = simulation.step(record);
+    EXPECT_TRUE(status.ok()) << status.message;
+  }
+  return simulation.state();
+}
+
+TEST(Simulation, StepsThatOvershootAreHalved) {
+  std::vector<StepRecord> whole, halved;
+  spin(scene_of(spinning, {"time.max_halvings=0"}), 1, whole);
+  spin(scene_of(spinning, {"time.max_halvings=6", "time.overshoot_limit=0.01"}), 1, halved);
+  EXPECT_EQ(whole[0].retries, 0);
+  EXPECT_GT(whole[0].max_stretch, 0.06) << "a step as long as that stretches what only turns";
+  // One turn of 0.4 rad lengthens by 1/cos - 1 = 8 %, one of 0.1 rad by 0.5 %.
+  EXPECT_GE(halved[0].retries, 3) << "the whole and both its halves are too long";
+  EXPECT_LE(halved[0].retries, 7);
+  EXPECT_LT(halved[0].max_stretch, 0.02);
+  EXPECT_EQ(halved[0].time, whole[0].time);
+}
+
+// Of a step cut in two, each half is a whole step of half the length. BDF2 starts afresh with each of them, which makes it Euler's method.
+TEST(Simulation, HalvesAreStepsOfHalfTheLength) {
+  for (const char* integrator : {"semi_implicit_euler", "bdf2"}) {
+    std::vector<StepRecord> halved, half;
+    const State a = spin(scene_of(spinning, {"time.overshoot_limit=0", "time.max_halvings=1", "solver.tolerance=1e-12",
+                                             fmt::format("time.integrator=\"{}\"", integrator)}),
+                         6, halved);
+    const State b = spin(scene_of(spinning, {"time.max_halvings=0", "time.step=2e-3", "solver.tolerance=1e-12"}), 12, half);
+    for (const StepRecord& record : halved) ASSERT_EQ(record.retries, 1);
+    for (std::size_t i = 0; i < a.x.size(); ++i) ASSERT_LT((a.x[i] - b.x[i]).norm(), 1e-9) << integrator << ", node " << i;
+  }
+  std::vector<StepRecord> records;
+  EXPECT_FALSE(spin(scene_of(spinning, {"time.overshoot_limit=0", "time.max_halvings=1", "time.integrator=\"bdf2\""}), 1, records).has_previous)
+      << "the next step is longer than the last";
+}
+
+TEST(Simulation, AStepThatCannotBeSolvedLeavesTheStateAsItWas) {
+  Scene scene = scene_of(spinning);
+  Simulation simulation(scene);
+  State state = simulation.state();
+  state.v[7] = Vec3(1e200, 0, 0);  // its square is not a number that a solver can hold
+  simulation.restore(state, simulation.contact().state(), 0);
+  StepRecord record;
+  const Status status = simulation.step(record);
+  ASSERT_FALSE(status.ok());
+  EXPECT_NE(status.message.find("step 1"), std::string::npos) << status.message;
+  EXPECT_NE(status.message.find("also with steps of 0.00025 s"), std::string::npos) << status.message;
+  EXPECT_EQ(record.retries, 4);
+  expect_same(simulation.state(), state, "after the failed step");
+  EXPECT_EQ(simulation.steps_done(), 0);
 }
 
 // Pins carried along key frames: linear in between, exactly there at every step.

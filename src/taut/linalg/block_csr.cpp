@@ -19,6 +19,7 @@ constexpr Index gather_capacity = 192;
 void fill_layout(BlockPattern& p) {
   const Index n = p.rows();
   p.block_offset.resize(p.column.size());
+  p.column_dof.resize(p.column.size());
   p.value_start.assign(static_cast<std::size_t>(n) + 1, 0);
   p.diagonal.assign(static_cast<std::size_t>(n), -1);
   p.uniform_dim = n > 0 ? p.dim(0) : 0;
@@ -27,6 +28,7 @@ void fill_layout(BlockPattern& p) {
     for (Index k = p.row_start[i]; k < p.row_start[i + 1]; ++k) {
       assert(p.column[k] >= 0 && p.column[k] < n);
       p.block_offset[k] = width;
+      p.column_dof[k] = p.dof_start[p.column[k]];
       width += p.dim(p.column[k]);
       if (p.column[k] == i) p.diagonal[i] = k;
     }
@@ -39,30 +41,45 @@ void fill_layout(BlockPattern& p) {
 struct RowView {
   const Index* row_start;
   const Index* column;
+  const Index* column_dof;
   const Index* dof_start;
   const Offset* value_start;
   const double* values;
 };
 
-// y_i = A_i x for rows of 3x3 blocks; returns sum of x_i·y_i over the rows.
-TAUT_MULTIVERSION double rows_product_3(const RowView& a, Index begin, Index end, const double* x, double* y) {
+// y_i = A_i x for rows of blocks of up to 3x3; returns sum of x_i·y_i over the rows. Rows whose neighbours all have 3 unknowns gather without
+// asking each for its dim: nearly all rows of a cloth that is held here and there.
+TAUT_MULTIVERSION double rows_product_blocks(const RowView& a, Index begin, Index end, const double* x, double* y) {
   alignas(64) double gathered[gather_capacity];
   double xax = 0.0;
   for (Index i = begin; i < end; ++i) {
-    const Index first = a.row_start[i], count = a.row_start[i + 1] - first;
-    const Index width = 3 * count;
-    const double* row0 = a.values + a.value_start[i];
+    const Index dof = a.dof_start[i], dim = a.dof_start[i + 1] - dof;
+    if (dim == 0) continue;
+    const double* row = a.values + a.value_start[i];
+    const Index width = static_cast<Index>((a.value_start[i + 1] - a.value_start[i]) / dim);
+    const Index last = a.row_start[i + 1];
+    const bool whole = width == 3 * (last - a.row_start[i]);
     double s0 = 0.0, s1 = 0.0, s2 = 0.0;
-    for (Index piece = 0; piece < width; piece += gather_capacity) {
-      const Index length = std::min(gather_capacity, width - piece);
-      const Index* columns = a.column + first + piece / 3;
-      for (Index k = 0; k < length / 3; ++k) {
-        const double* from = x + 3 * static_cast<std::ptrdiff_t>(columns[k]);
-        gathered[3 * k] = from[0], gathered[3 * k + 1] = from[1], gathered[3 * k + 2] = from[2];
+    Index k = a.row_start[i];
+    for (Index piece = 0; piece < width;) {
+      Index length = 0;
+      if (whole) {
+        for (; k < last && length < gather_capacity; ++k, length += 3) {
+          const double* from = x + a.column_dof[k];
+          gathered[length] = from[0], gathered[length + 1] = from[1], gathered[length + 2] = from[2];
+        }
+      } else {
+        for (; k < last; ++k) {
+          const Index from = a.column_dof[k], d = a.dof_start[a.column[k] + 1] - from;
+          if (length + d > gather_capacity) break;
+          for (Index c = 0; c < d; ++c) gathered[length + c] = x[from + c];
+          length += d;
+        }
       }
-      const double* p0 = row0 + piece;
-      const double* p1 = p0 + width;
-      const double* p2 = p1 + width;
+      // A row of fewer than three unknowns repeats its first instead: one loop for all.
+      const double* p0 = row + piece;
+      const double* p1 = dim > 1 ? p0 + width : p0;
+      const double* p2 = dim > 2 ? p1 + width : p0;
 #pragma omp simd reduction(+ : s0, s1, s2)
       for (Index c = 0; c < length; ++c) {
         const double g = gathered[c];
@@ -70,9 +87,13 @@ TAUT_MULTIVERSION double rows_product_3(const RowView& a, Index begin, Index end
         s1 += p1[c] * g;
         s2 += p2[c] * g;
       }
+      piece += length;
     }
-    y[3 * i] = s0, y[3 * i + 1] = s1, y[3 * i + 2] = s2;
-    xax += x[3 * i] * s0 + x[3 * i + 1] * s1 + x[3 * i + 2] * s2;
+    const double s[3] = {s0, s1, s2};
+    for (Index r = 0; r < dim; ++r) {
+      y[dof + r] = s[r];
+      xax += x[dof + r] * s[r];
+    }
   }
   return xax;
 }
@@ -91,69 +112,10 @@ TAUT_MULTIVERSION double rows_product_1(const RowView& a, Index begin, Index end
   return xax;
 }
 
-// The same for nodes of mixed dims.
-TAUT_MULTIVERSION double rows_product_mixed(const RowView& a, Index begin, Index end, const double* x, double* y) {
-  alignas(64) double gathered[gather_capacity];
-  double xax = 0.0;
-  for (Index i = begin; i < end; ++i) {
-    const Index dof = a.dof_start[i], dim = a.dof_start[i + 1] - dof;
-    if (dim == 0) continue;
-    const Index width = static_cast<Index>((a.value_start[i + 1] - a.value_start[i]) / dim);
-    const double* row0 = a.values + a.value_start[i];
-    double s[3] = {0.0, 0.0, 0.0};
-    Index k = a.row_start[i];
-    for (Index piece = 0; piece < width;) {
-      Index length = 0;
-      for (; k < a.row_start[i + 1]; ++k) {
-        const Index from = a.dof_start[a.column[k]], d = a.dof_start[a.column[k] + 1] - from;
-        if (length + d > gather_capacity) break;
-        if (d == 3) {
-          gathered[length] = x[from], gathered[length + 1] = x[from + 1], gathered[length + 2] = x[from + 2];
-        } else {
-          for (Index c = 0; c < d; ++c) gathered[length + c] = x[from + c];
-        }
-        length += d;
-      }
-      const double* p = row0 + piece;
-      if (dim == 3) {
-        double s0 = 0.0, s1 = 0.0, s2 = 0.0;
-        const double* p1 = p + width;
-        const double* p2 = p1 + width;
-#pragma omp simd reduction(+ : s0, s1, s2)
-        for (Index c = 0; c < length; ++c) {
-          const double g = gathered[c];
-          s0 += p[c] * g;
-          s1 += p1[c] * g;
-          s2 += p2[c] * g;
-        }
-        s[0] += s0, s[1] += s1, s[2] += s2;
-      } else {
-        for (Index r = 0; r < dim; ++r) {
-          const double* pr = p + r * width;
-          double sr = 0.0;
-#pragma omp simd reduction(+ : sr)
-          for (Index c = 0; c < length; ++c) sr += pr[c] * gathered[c];
-          s[r] += sr;
-        }
-      }
-      piece += length;
-    }
-    for (Index r = 0; r < dim; ++r) {
-      y[dof + r] = s[r];
-      xax += x[dof + r] * s[r];
-    }
-  }
-  return xax;
-}
-
 double rows_product(const BlockCsr& a, Index begin, Index end, const double* x, double* y) {
   const BlockPattern& p = *a.pattern;
-  const RowView view{p.row_start.data(), p.column.data(), p.dof_start.data(), p.value_start.data(), a.values.data()};
-  switch (p.uniform_dim) {
-    case 3: return rows_product_3(view, begin, end, x, y);
-    case 1: return rows_product_1(view, begin, end, x, y);
-    default: return rows_product_mixed(view, begin, end, x, y);
-  }
+  const RowView view{p.row_start.data(), p.column.data(), p.column_dof.data(), p.dof_start.data(), p.value_start.data(), a.values.data()};
+  return p.uniform_dim == 1 ? rows_product_1(view, begin, end, x, y) : rows_product_blocks(view, begin, end, x, y);
 }
 
 }  // namespace
@@ -165,7 +127,7 @@ Index BlockPattern::find(Index i, Index j) const {
 }
 
 Offset BlockPattern::bytes() const {
-  return static_cast<Offset>(sizeof(Index) * (dof_start.size() + row_start.size() + column.size() + block_offset.size() + diagonal.size()) +
+  return static_cast<Offset>(sizeof(Index) * (dof_start.size() + row_start.size() + column.size() + column_dof.size() + block_offset.size() + diagonal.size()) +
                              sizeof(Offset) * value_start.size());
 }
 

@@ -23,6 +23,7 @@ struct BlockPattern {
   std::vector<Index> dof_start;      // rows + 1
   std::vector<Index> row_start;      // rows + 1, into column and block_offset
   std::vector<Index> column;         // block column of each block
+  std::vector<Index> column_dof;     // dof_start[column] of each block: where its part of x begins
   std::vector<Index> block_offset;   // first column of each block in its row's panel
   std::vector<Index> diagonal;       // rows: which block is the diagonal one
   std::vector<Offset> value_start;   // rows + 1

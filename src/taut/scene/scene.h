@@ -21,6 +21,8 @@ struct TimeOptions {
   int frames = 100;          // pictures to write after the first (frame 0 is the start)
   int steps_per_frame = 1;
   IntegratorKind integrator = IntegratorKind::semi_implicit_euler;
+  double overshoot_limit = 0.05; // share of a spring's rest length, force/overshoot.h; beyond it the step is halved
+  int max_halvings = 4;
   bool operator==(const TimeOptions&) const = default;
 };
 

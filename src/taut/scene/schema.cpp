@@ -23,6 +23,16 @@ void describe_time(SchemaVisitor& v, TimeOptions& time) {
   v.choice(
       "integrator", time.integrator, integrator_names,
       {.doc = "`imex` treats stretch springs implicitly and all else explicitly: cheaper, but bounded in step size by shear and bending"});
+  v.number("overshoot_limit", time.overshoot_limit,
+           {.doc = "a step in which a stretch spring ends longer than its linearised force foresaw, by more than this share of its rest length, is redone as "
+                   "two halves",
+            .min = 0,
+            .max = 1e6});
+  v.integer("max_halvings", time.max_halvings,
+            {.doc = "a step is halved at most this often, because of `overshoot_limit` or because it could not be solved; 0: every step has length `step`, as in "
+                    "the paper",
+             .min = 0,
+             .max = 20});
 }
 
 std::string unknown_solver(const std::string& name) {

@@ -7,6 +7,7 @@
 
 #include "taut/base/parallel.h"
 #include "taut/base/timer.h"
+#include "taut/force/overshoot.h"
 #include "taut/linalg/sparse_cholesky.h"
 #include "taut/solve/core_bound.h"
 
@@ -38,43 +39,81 @@ void Simulation::restore(State state, ContactState contacts, int steps) {
 
 Status Simulation::step(StepRecord& record) {
   Timer timer;
-  const double h = scene_.time.step;
   record = {};
   record.step = steps_ + 1;
   // Counted, not summed up: a thousand additions of h would drift from the times that key frames are given at.
-  state_.time = steps_ * h;
+  state_.time = steps_ * scene_.time.step;
+  if (Status status = advance(scene_.time.step, 0, record); !status.ok()) {
+    status.message = fmt::format("step {} (t = {:.6g} s): {}", record.step, state_.time, status.message);
+    return status;
+  }
+  state_.time = ++steps_ * scene_.time.step;
+  record.time = state_.time;
+  note_state(record);
+  record.step_ms = timer.milliseconds();
+  return {};
+}
 
+Status Simulation::advance(double h, int halvings, StepRecord& record) {
+  Status status = try_step(h, record);
+  if (status.ok() && halvings == 0 && on_solved) on_solved(*this, last_summary_);
+  const bool may_halve = halvings < scene_.time.max_halvings;
+  if (may_halve && (!status.ok() || overshoot() > scene_.time.overshoot_limit)) return advance_halves(h, halvings, record);
+  if (status.ok()) accept(record);
+  return status;
+}
+
+Status Simulation::advance_halves(double h, int halvings, StepRecord& record) {
+  ++record.retries;
+  const State state = state_;
+  const ContactState contacts = contact_.state();
+  Status status;
+  for (int half = 0; half < 2 && status.ok(); ++half) {
+    stepper_.start_afresh(state_);
+    status = advance(h / 2, halvings + 1, record);
+  }
+  if (status.ok()) {
+    stepper_.start_afresh(state_);
+  } else {
+    state_ = state;
+    contact_.restore(contacts);
+    if (halvings + 1 == scene_.time.max_halvings) status.message += fmt::format(" (also with steps of {:.3g} s)", h / 2);
+  }
+  return status;
+}
+
+double Simulation::overshoot() const {
+  double largest = 0.0;
+  for (const SpringModel* model : cloth_.stretch_springs()) largest = std::max(largest, largest_overshoot(*model, state_.x, stepper_.x_end()));
+  return largest;
+}
+
+Status Simulation::try_step(double h, StepRecord& record) {
   pins_.reset(cloth_.nodes());
   cloth_.constrain_pins(state_.time, h, state_.x, pins_);
   stepper_.begin(state_, h);
-  record.assemble_ms = stepper_.assemble_ms();
+  record.assemble_ms += stepper_.assemble_ms();
   Timer contact_timer;
   std::vector<Vec3> predicted(state_.x.size());
   for (std::size_t i = 0; i < predicted.size(); ++i) predicted[i] = state_.x[i] + h * state_.v[i];
   contact_.begin_step(state_.time, h, state_.x, predicted, pins_);
   record.contact_ms += contact_timer.milliseconds();
+  return solve_passes(record);
+}
 
-  if (Status status = solve_passes(record); !status.ok()) {
-    status.message = fmt::format("step {} (t = {:.6g} s): {}", record.step, state_.time, status.message);
-    return status;
-  }
-
-  contact_timer.lap();
+void Simulation::accept(StepRecord& record) {
+  Timer contact_timer;
   std::vector<Vec3> corrected(stepper_.x_end().begin(), stepper_.x_end().end());
-  record.contact_moved = contact_.finish(corrected);
-  record.deepest_m = contact_.deepest();
+  const int moved = contact_.finish(corrected);
+  record.contact_moved += moved;
+  record.deepest_m = std::max(record.deepest_m, contact_.deepest());
   record.contacts = contact_.contacts();
   record.contact_ms += contact_timer.milliseconds();
-  if (record.contact_moved > 0) {
+  if (moved > 0) {
     stepper_.commit(state_, corrected);
   } else {
     stepper_.commit(state_);
   }
-  state_.time = ++steps_ * h;
-  record.time = state_.time;
-  note_state(record);
-  record.step_ms = timer.milliseconds();
-  return {};
 }
 
 Status Simulation::solve_passes(StepRecord& record) {
@@ -95,7 +134,7 @@ Status Simulation::solve_passes(StepRecord& record) {
   }
   record.dof = constraints_.free_dofs();
   record.constraints = constraints_.constrained_dofs();
-  if (on_solved) on_solved(*this, summary);
+  last_summary_ = std::move(summary);
   return {};
 }
 

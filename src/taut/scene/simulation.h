@@ -3,8 +3,10 @@
 //
 //   step():  pins and contact give constraints -> assemble -> [solve -> contact judges the constraint forces] until the contacts agree -> commit
 //
-// A solve that fails is repeated by a direct method (counted in `fallbacks`, named in the record); if that fails too, step() returns a bad status
-// with the step and time in its message and the state stays that of the step before.
+// A solve that fails is repeated by a direct method (counted in `fallbacks`, named in the record). If that fails too, or a stretch spring
+// overshoots by more than TimeOptions::overshoot_limit (force/overshoot.h), the step is redone as two of half the length, and each of them
+// likewise, down to h / 2^max_halvings (counted in `retries`). What overshoots there is accepted; what cannot be solved there makes step()
+// return a bad status with the step and time in its message, and the state stays that of the step before.
 
 #include <functional>
 
@@ -31,6 +33,7 @@ struct StepRecord {
   int fallbacks = 0;
   Index collapsed_springs = 0;
   int contact_passes = 0;
+  int retries = 0;               // times that the step, or a part of it, was redone with half the length
   int contact_moved = 0;         // nodes moved out of solids after the last pass
   double deepest_m = 0.0;        // how deep the deepest of them was
 };
@@ -53,9 +56,15 @@ class Simulation {
   // Goes on from a checkpoint.
   void restore(State state, ContactState contacts, int steps);
   // Called after the last pass of a step, before it is committed: the solved system is in stepper().system(). For dumps and benches.
+  // A step that is then redone in halves calls it once, for the whole.
   std::function<void(Simulation&, const SolveSummary&)> on_solved;
 
  private:
+  Status advance(double h, int halvings, StepRecord& record);
+  Status advance_halves(double h, int halvings, StepRecord& record);
+  Status try_step(double h, StepRecord& record);
+  void accept(StepRecord& record);
+  double overshoot() const;
   Status solve_passes(StepRecord& record);
   SolveSummary solve_or_fall_back(StepRecord& record);
   void note_solve(const SolveSummary& summary, double rho, StepRecord& record) const;
@@ -68,6 +77,7 @@ class Simulation {
   std::unique_ptr<ConstrainedSolver> fallback_;
   ConstraintSet pins_, constraints_;
   State state_;
+  SolveSummary last_summary_;
   int steps_ = 0;
   bool has_core_;
 };

@@ -87,6 +87,12 @@ void Stepper::forget_other_unknown(State& state, const std::string& solved_for) 
   if (integrator_->unknown(state) != solved_for) state.last.clear();
 }
 
+void Stepper::start_afresh(State& state) const {
+  const std::string solved_for = integrator_->unknown(state);
+  state.has_previous = false;
+  forget_other_unknown(state, solved_for);
+}
+
 void Stepper::commit(State& state, std::span<const Vec3> corrected) {
   const std::string solved_for = integrator_->unknown(state);
   commit(state);

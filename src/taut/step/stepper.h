@@ -33,6 +33,8 @@ class Stepper {
   // moved over h, and a multistep method starts afresh.
   void commit(State& state);
   void commit(State& state, std::span<const Vec3> corrected);
+  // The next step is of another size than the last: a multistep method must not use the step before.
+  void start_afresh(State& state) const;
 
   // The system of the last begin/solve, for dumps, benches and other solvers. Valid until the next call.
   LinearSystem system() const;
