@@ -22,6 +22,7 @@ struct SmallSystem {
   std::vector<std::unique_ptr<SpringModel>> models;
   Vec3 gravity = Vec3::Zero();
   double drag = 0.0;  // kg/s a node
+  NewtonOptions newton{.tolerance = 1e-10, .max_iterations = 5000};
   State state;
   ConstraintSet constraints;
   std::unique_ptr<Stepper> stepper;
@@ -40,7 +41,7 @@ struct SmallSystem {
     for (const auto& model : models) all.push_back(model.get());
     ExternalForces external(masses, gravity, {});
     for (Index i = 0; i < nodes(); ++i) external.set_drag(i, drag);
-    stepper = std::make_unique<Stepper>(nodes(), all, std::move(external), integrator, direct_solver());
+    stepper = std::make_unique<Stepper>(nodes(), all, std::move(external), integrator, direct_solver(), newton);
     constraints.reset(nodes());
   }
   void pin(Index node, const Vec3& displacement = Vec3::Zero()) { constraints.fix(node, displacement); }
@@ -67,6 +68,7 @@ struct SmallSystem {
   }
 };
 
-constexpr std::array all_integrators{IntegratorKind::semi_implicit_euler, IntegratorKind::imex, IntegratorKind::bdf2};
+inline constexpr std::array all_integrators{IntegratorKind::semi_implicit_euler, IntegratorKind::imex, IntegratorKind::bdf2,
+                                            IntegratorKind::newton};
 
 }  // namespace taut::test

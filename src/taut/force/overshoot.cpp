@@ -27,14 +27,17 @@ double largest_overshoot(const SpringModel& model, std::span<const Vec3> x_start
     }
   };
   const auto springs = model.springs();
-  return ordered_sum<Largest>(static_cast<Index>(springs.size()), [&](Index begin, Index end) {
-    Largest largest;
-    for (Index s = begin; s < end; ++s) {
-      const auto& [i, j, parameters] = springs[s];
-      largest += Largest{spring_overshoot(model.law(), parameters, x_start[j] - x_start[i], x_end[j] - x_end[i])};
-    }
-    return largest;
-  }).value;
+  return ordered_sum<Largest>(static_cast<Index>(springs.size()),
+                              [&](Index begin, Index end) {
+                                Largest largest;
+                                for (Index s = begin; s < end; ++s) {
+                                  const auto& [i, j, parameters] = springs[s];
+                                  largest +=
+                                      Largest{spring_overshoot(model.law(), parameters, x_start[j] - x_start[i], x_end[j] - x_end[i])};
+                                }
+                                return largest;
+                              })
+      .value;
 }
 
 }  // namespace taut

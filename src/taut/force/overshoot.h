@@ -1,6 +1,7 @@
 #pragma once
-// How far a step's one linear solve went wrong about stretch. The linearised force of a spring acts along its direction e at the start of the step
-// and knows nothing of the spring turning; a slack spring of the buckling law has no stiffness at all. What a spring ends longer than that:
+// How far a step's one linear solve went wrong about stretch. The linearised force of a spring acts along its direction e at the start of
+// the step and knows nothing of the spring turning; a slack spring of the buckling law has no stiffness at all. What a spring ends longer
+// than that:
 //
 //   foreseen   e·d1 when the spring had stiffness at the start (d1 = x_j - x_i at the end), else L0     m
 //   overshoot  max(|d1| - max(foreseen, L0), 0) / L0

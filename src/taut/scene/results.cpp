@@ -50,7 +50,8 @@ void ResultsFolder::start(const Simulation& simulation) const {
   for (const Triangle& t : surface.triangles) triangles.insert(triangles.end(), t.begin(), t.end());
   std::vector<float> uv;
   for (const Vec2& p : surface.texcoords) uv.insert(uv.end(), {static_cast<float>(p.x()), static_cast<float>(p.y())});
-  const std::int64_t triangle_shape[] = {static_cast<std::int64_t>(surface.triangles.size()), 3}, uv_shape[] = {static_cast<std::int64_t>(surface.texcoords.size()), 2};
+  const std::int64_t triangle_shape[] = {static_cast<std::int64_t>(surface.triangles.size()), 3},
+                     uv_shape[] = {static_cast<std::int64_t>(surface.texcoords.size()), 2};
   write_npy<std::int32_t>(folder_ / "frames" / "triangles.npy", triangles, triangle_shape);
   write_npy<float>(folder_ / "frames" / "uv.npy", uv, uv_shape);
   write_file(folder_ / "frames" / "cloths.json", cloths_json(simulation.cloth()));
@@ -71,25 +72,29 @@ void ResultsFolder::remove_frames_after(int frame) const {
 }
 
 void ResultsFolder::write_checkpoint(const Simulation& simulation, int frame) const {
-  const Checkpoint checkpoint{scene_to_toml(simulation.scene()), simulation.steps_done(), frame, simulation.state(), simulation.contact().state()};
+  const Checkpoint checkpoint{scene_to_toml(simulation.scene()), simulation.steps_done(), frame, simulation.state(),
+                              simulation.contact().state()};
   write_file(checkpoint_file(), [&](std::ostream& out) { write(out, checkpoint); });
 }
 
 int ResultsFolder::read_checkpoint(Simulation& simulation) const {
   Checkpoint checkpoint = parse_checkpoint(read_file(checkpoint_file()), checkpoint_file().string());
   if (checkpoint.scene != scene_to_toml(simulation.scene()))
-    throw InputError({checkpoint_file().string()}, fmt::format("belongs to another scene than {}; run the scene anew with `taut run`", scene_file().string()));
+    throw InputError({checkpoint_file().string()},
+                     fmt::format("belongs to another scene than {}; run the scene anew with `taut run`", scene_file().string()));
   if (static_cast<Index>(checkpoint.state.x.size()) != simulation.cloth().nodes())
-    throw InputError({checkpoint_file().string()}, fmt::format("has {} nodes, the scene has {}; a mesh file has changed since: run the scene anew", checkpoint.state.x.size(),
-                                                               simulation.cloth().nodes()));
+    throw InputError({checkpoint_file().string()},
+                     fmt::format("has {} nodes, the scene has {}; a mesh file has changed since: run the scene anew",
+                                 checkpoint.state.x.size(), simulation.cloth().nodes()));
   simulation.restore(std::move(checkpoint.state), std::move(checkpoint.contacts), checkpoint.steps);
   return checkpoint.frame;
 }
 
 std::string StatsWriter::header() {
   return "step,time,frame,nodes,dof,constraints,contacts,solver,core_springs,iterations,relative_residual,"
-         "assemble_ms,order_ms,factor_ms,solve_ms,contact_ms,step_ms,kinetic_J,elastic_J,max_stretch,intersections,bound_iterations,precision,fallbacks,"
-         "collapsed_springs,retries,zone_nodes,contact_passes,contact_moved,deepest_m\n";
+         "assemble_ms,order_ms,factor_ms,solve_ms,contact_ms,step_ms,kinetic_J,elastic_J,max_stretch,intersections,bound_iterations,"
+         "precision,fallbacks,"
+         "collapsed_springs,retries,zone_nodes,contact_passes,contact_moved,deepest_m,newton_iterations\n";
 }
 
 StatsWriter::StatsWriter(const fs::path& path, int keep_steps) : path_(path) {
@@ -99,7 +104,8 @@ StatsWriter::StatsWriter(const fs::path& path, int keep_steps) : path_(path) {
     std::size_t end = 0;
     for (int line = 0; line <= keep_steps; ++line) {
       end = content.find('\n', end);
-      if (end == std::string::npos) throw InputError({path.string()}, fmt::format("has fewer than the {} steps of the checkpoint; run the scene anew", keep_steps));
+      if (end == std::string::npos)
+        throw InputError({path.string()}, fmt::format("has fewer than the {} steps of the checkpoint; run the scene anew", keep_steps));
       ++end;
     }
     content.resize(end);
@@ -114,10 +120,12 @@ StatsWriter::~StatsWriter() { std::fclose(file_); }
 void StatsWriter::write(const StepRecord& r, int frame) {
   const auto optional = [](auto value, auto nothing) { return value == nothing ? std::string() : std::to_string(value); };
   const std::string row = fmt::format(
-      "{},{:.9g},{},{},{},{},{},{},{},{},{:.3e},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.9g},{:.9g},{:.6g},,{},double,{},{},{},,{},{},{:.3e}\n", r.step, r.time,
-      frame, r.nodes, r.dof, r.constraints, r.contacts, r.solver, optional(r.core_springs, Index{0}), r.iterations, r.relative_residual, r.assemble_ms, r.order_ms,
-      r.factor_ms, r.solve_ms, r.contact_ms, r.step_ms, r.kinetic_J, r.elastic_J, r.max_stretch, optional(r.bound_iterations, -1), r.fallbacks,
-      r.collapsed_springs, r.retries, r.contact_passes, r.contact_moved, r.deepest_m);
+      "{},{:.9g},{},{},{},{},{},{},{},{},{:.3e},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.9g},{:.9g},{:.6g},,{},double,{},{},{},,{},{},{"
+      ":.3e},{}\n",
+      r.step, r.time, frame, r.nodes, r.dof, r.constraints, r.contacts, r.solver, optional(r.core_springs, Index{0}), r.iterations,
+      r.relative_residual, r.assemble_ms, r.order_ms, r.factor_ms, r.solve_ms, r.contact_ms, r.step_ms, r.kinetic_J, r.elastic_J,
+      r.max_stretch, optional(r.bound_iterations, -1), r.fallbacks, r.collapsed_springs, r.retries, r.contact_passes, r.contact_moved,
+      r.deepest_m, r.newton_iterations);
   // One write a row: a reader, or a crash, never sees half of one.
   if (std::fwrite(row.data(), 1, row.size(), file_) != row.size() || std::fflush(file_) != 0)
     throw InputError({path_.string()}, "cannot be written; is the disk full? The steps up to here are safe: `taut resume` goes on");

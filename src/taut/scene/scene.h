@@ -17,20 +17,21 @@
 namespace taut {
 
 struct TimeOptions {
-  double step = 5e-3;        // s
-  int frames = 100;          // pictures to write after the first (frame 0 is the start)
+  double step = 5e-3;  // s
+  int frames = 100;    // pictures to write after the first (frame 0 is the start)
   int steps_per_frame = 1;
   IntegratorKind integrator = IntegratorKind::semi_implicit_euler;
-  double overshoot_limit = 0.05; // share of a spring's rest length, force/overshoot.h; beyond it the step is halved
+  NewtonOptions newton;
+  double overshoot_limit = 0.05;  // share of a spring's rest length, force/overshoot.h; beyond it the step is halved
   int max_halvings = 4;
   bool operator==(const TimeOptions&) const = default;
 };
 
 // Which nodes a pin holds. Exactly one way is used.
 struct NodeSelection {
-  std::vector<Index> nodes;           // by index
-  std::vector<std::string> corners;   // of a grid: "u0v0", "u1v0", "u0v1", "u1v1"
-  std::vector<std::string> edges;     // of a grid: "u0", "u1", "v0", "v1"
+  std::vector<Index> nodes;          // by index
+  std::vector<std::string> corners;  // of a grid: "u0v0", "u1v0", "u0v1", "u1v1"
+  std::vector<std::string> edges;    // of a grid: "u0", "u1", "v0", "v1"
   bool operator==(const NodeSelection&) const = default;
 };
 
@@ -40,7 +41,7 @@ struct Pin {
   NodeSelection where;
   std::vector<KeyFrame> key_frames;
   Vec3 pivot = Vec3::Zero();
-  double release = -1.0;              // negative: never
+  double release = -1.0;  // negative: never
   bool operator==(const Pin&) const = default;
 };
 
@@ -49,36 +50,36 @@ struct Cloth {
   // Shape: a grid (Provot springs), or a triangle mesh from a file (stretch on edges, bend across edges).
   bool from_file = false;
   GridShape grid;
-  std::filesystem::path mesh;         // OBJ; absolute after reading (in a file: relative to it)
-  double scale = 1.0;                 // of the file's coordinates; 0.01 for centimetres
-  Pose placement;                     // applied after scale
-  bool y_up = false;                  // turn Y-up files to Taut's Z-up
-  double node_mass = 0.0;             // kg, each; or
-  double density = 0.0;               // kg/m², spread over the triangles' corners; exactly one of the two is > 0
-  double drag = 0.0;                  // kg/s a node: force -drag (v - wind)
-  double wind_pressure = 0.0;         // kg/(m² s): force c A (n·(wind - v)) n on each triangle of area A and normal n, a third to each node
+  std::filesystem::path mesh;  // OBJ; absolute after reading (in a file: relative to it)
+  double scale = 1.0;          // of the file's coordinates; 0.01 for centimetres
+  Pose placement;              // applied after scale
+  bool y_up = false;           // turn Y-up files to Taut's Z-up
+  double node_mass = 0.0;      // kg, each; or
+  double density = 0.0;        // kg/m², spread over the triangles' corners; exactly one of the two is > 0
+  double drag = 0.0;           // kg/s a node: force -drag (v - wind)
+  double wind_pressure = 0.0;  // kg/(m² s): force c A (n·(wind - v)) n on each triangle of area A and normal n, a third to each node
   SpringMaterial material;
   std::vector<Pin> pins;
-  Vec3 velocity = Vec3::Zero();       // m/s at the start
-  double jitter = 0.0;                // m: each start coordinate is moved by up to this, from `jitter_seed`
+  Vec3 velocity = Vec3::Zero();  // m/s at the start
+  double jitter = 0.0;           // m: each start coordinate is moved by up to this, from `jitter_seed`
   unsigned jitter_seed = 1;
   bool operator==(const Cloth&) const = default;
 };
 
 struct Wind {
-  Vec3 velocity = Vec3::Zero();       // m/s
-  double gust = 0.0;                  // share of velocity: wind(t) = velocity (1 + gust sin(2π gust_frequency t))
-  double gust_frequency = 1.0;        // Hz
+  Vec3 velocity = Vec3::Zero();  // m/s
+  double gust = 0.0;             // share of velocity: wind(t) = velocity (1 + gust sin(2π gust_frequency t))
+  double gust_frequency = 1.0;   // Hz
   bool operator==(const Wind&) const = default;
 };
 
 struct Scene {
-  std::string title;                  // one line, shown in reports and pictures
-  std::filesystem::path folder;       // of the scene file
+  std::string title;             // one line, shown in reports and pictures
+  std::filesystem::path folder;  // of the scene file
   TimeOptions time;
   SolverOptions solver;
   ContactOptions contact;
-  Vec3 gravity = Vec3(0, 0, -9.81);   // m/s²
+  Vec3 gravity = Vec3(0, 0, -9.81);  // m/s²
   Wind wind;
   std::vector<Cloth> cloths;
   std::vector<Solid> solids;

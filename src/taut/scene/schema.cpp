@@ -13,23 +13,32 @@ namespace taut {
 
 namespace {
 
-constexpr std::array integrator_names{"semi_implicit_euler", "imex", "bdf2"};
+constexpr std::array integrator_names{"semi_implicit_euler", "imex", "bdf2", "newton"};
 constexpr std::array reordering_names{"vectors", "matrix"};
 
 void describe_time(SchemaVisitor& v, TimeOptions& time) {
   v.number("step", time.step, {.doc = "time step h", .unit = "s", .min = 1e-7, .max = 0.1, .hint = "it is in seconds: 5 ms is 5e-3"});
   v.integer("frames", time.frames, {.doc = "pictures written after the first, which shows the start", .min = 1, .max = 1e6});
   v.integer("steps_per_frame", time.steps_per_frame, {.doc = "time steps from picture to picture", .min = 1, .max = 1e6});
-  v.choice(
-      "integrator", time.integrator, integrator_names,
-      {.doc = "`imex` treats stretch springs implicitly and all else explicitly: cheaper, but bounded in step size by shear and bending"});
+  v.choice("integrator", time.integrator, integrator_names,
+           {.doc = "`imex` treats stretch springs implicitly and all else explicitly: cheaper, but bounded in step size by shear and "
+                   "bending; `newton` is implicit "
+                   "Euler with the forces at the end of the step, iterated until they hold"});
+  v.number("newton_tolerance", time.newton.tolerance,
+           {.doc = "`newton` stops when what is left of the momentum equation is below this share of what drives the step",
+            .min = 1e-12,
+            .max = 0.5});
+  v.integer("newton_max_iterations", time.newton.max_iterations,
+            {.doc = "linear solves of `newton`; a step that needs more is halved", .min = 1, .max = 10000});
   v.number("overshoot_limit", time.overshoot_limit,
-           {.doc = "a step in which a stretch spring ends longer than its linearised force foresaw, by more than this share of its rest length, is redone as "
+           {.doc = "a step in which a stretch spring ends longer than its linearised force foresaw, by more than this share of its rest "
+                   "length, is redone as "
                    "two halves",
             .min = 0,
             .max = 1e6});
   v.integer("max_halvings", time.max_halvings,
-            {.doc = "a step is halved at most this often, because of `overshoot_limit` or because it could not be solved; 0: every step has length `step`, as in "
+            {.doc = "a step is halved at most this often, because of `overshoot_limit` or because it could not be solved; 0: every step "
+                    "has length `step`, as in "
                     "the paper",
              .min = 0,
              .max = 20});

@@ -27,7 +27,7 @@ Simulation::Simulation(Scene scene)
     : scene_(std::move(scene)),
       cloth_(scene_),
       contact_(scene_.solids, cloth_.nodes(), scene_.contact),
-      stepper_(cloth_.nodes(), cloth_.force_models(), cloth_.external(), scene_.time.integrator, scene_.solver),
+      stepper_(cloth_.nodes(), cloth_.force_models(), cloth_.external(), scene_.time.integrator, scene_.solver, scene_.time.newton),
       state_(cloth_.start()),
       has_core_(scene_.solver.name.starts_with("core_pcg")) {}
 
@@ -83,8 +83,10 @@ Status Simulation::advance_halves(double h, int halvings, StepRecord& record) {
 }
 
 double Simulation::overshoot() const {
+  if (stepper_.integrator().is_nonlinear()) return 0.0;  // it has iterated until the forces at the end agree
   double largest = 0.0;
-  for (const SpringModel* model : cloth_.stretch_springs()) largest = std::max(largest, largest_overshoot(*model, state_.x, stepper_.x_end()));
+  for (const SpringModel* model : cloth_.stretch_springs())
+    largest = std::max(largest, largest_overshoot(*model, state_.x, stepper_.x_end()));
   return largest;
 }
 
@@ -124,7 +126,9 @@ Status Simulation::solve_passes(StepRecord& record) {
     Timer contact_timer;
     contact_.constrain(constraints_);
     record.contact_ms += contact_timer.milliseconds();
+    const double assembled = stepper_.assemble_ms();
     summary = solve_or_fall_back(record);
+    record.assemble_ms += stepper_.assemble_ms() - assembled;
     note_solve(summary, rho, record);
     ++record.contact_passes;
     if (!summary.status.ok()) return summary.status;
@@ -145,12 +149,14 @@ SolveSummary Simulation::solve_or_fall_back(StepRecord& record) {
   if (!fallback_) fallback_ = make_solver(fallback_options(scene_.solver));
   ++record.fallbacks;
   summary = stepper_.solve(constraints_, contact_.impulses(), *fallback_);
-  if (!summary.status.ok()) summary.status.message = fmt::format("{}: {}; then {}: {}", scene_.solver.name, reason, summary.solver, summary.status.message);
+  if (!summary.status.ok())
+    summary.status.message = fmt::format("{}: {}; then {}: {}", scene_.solver.name, reason, summary.solver, summary.status.message);
   return summary;
 }
 
 void Simulation::note_solve(const SolveSummary& summary, double rho, StepRecord& record) const {
   record.solver = summary.solver;
+  record.newton_iterations += stepper_.newton_iterations();
   record.iterations = std::max(record.iterations, summary.iterations);
   record.relative_residual = std::max(record.relative_residual, summary.relative_residual);
   record.order_ms += summary.order_ms;
@@ -174,7 +180,8 @@ void Simulation::note_state(StepRecord& record) const {
     record.elastic_J += model->energy(state_.x);
     record.collapsed_springs += model->collapsed(state_.x);
   }
-  for (const SpringModel* model : cloth_.stretch_springs()) record.max_stretch = std::max(record.max_stretch, largest_strain(*model, state_.x));
+  for (const SpringModel* model : cloth_.stretch_springs())
+    record.max_stretch = std::max(record.max_stretch, largest_strain(*model, state_.x));
 }
 
 }  // namespace taut

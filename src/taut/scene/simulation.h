@@ -1,7 +1,8 @@
 #pragma once
 // A scene in motion: the loop that joins contact and the step.
 //
-//   step():  pins and contact give constraints -> assemble -> [solve -> contact judges the constraint forces] until the contacts agree -> commit
+//   step():  pins and contact give constraints -> assemble -> [solve -> contact judges the constraint forces] until the contacts agree ->
+//   commit
 //
 // A solve that fails is repeated by a direct method (counted in `fallbacks`, named in the record). If that fails too, or a stretch spring
 // overshoots by more than TimeOptions::overshoot_limit (force/overshoot.h), the step is redone as two of half the length, and each of them
@@ -28,14 +29,15 @@ struct StepRecord {
   double relative_residual = 0.0;
   double assemble_ms = 0.0, order_ms = 0.0, factor_ms = 0.0, solve_ms = 0.0, contact_ms = 0.0, step_ms = 0.0;
   double kinetic_J = 0.0, elastic_J = 0.0;
-  double max_stretch = 0.0;      // largest L/L0 - 1 of all stretch springs
-  int bound_iterations = -1;     // -1: the solver has no bound
+  double max_stretch = 0.0;   // largest L/L0 - 1 of all stretch springs
+  int bound_iterations = -1;  // -1: the solver has no bound
   int fallbacks = 0;
   Index collapsed_springs = 0;
   int contact_passes = 0;
-  int retries = 0;               // times that the step, or a part of it, was redone with half the length
-  int contact_moved = 0;         // nodes moved out of solids after the last pass
-  double deepest_m = 0.0;        // how deep the deepest of them was
+  int newton_iterations = 0;  // linear solves beyond one a pass; nonlinear integrators
+  int retries = 0;            // times that the step, or a part of it, was redone with half the length
+  int contact_moved = 0;      // nodes moved out of solids after the last pass
+  double deepest_m = 0.0;     // how deep the deepest of them was
 };
 
 class Simulation {

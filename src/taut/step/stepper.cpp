@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <utility>
 
+#include "taut/base/parallel.h"
 #include "taut/base/timer.h"
 #include "taut/constraint/reduction.h"
 #include "taut/linalg/vector_ops.h"
+#include "taut/step/newton.h"
 
 namespace taut {
 
@@ -20,16 +23,20 @@ std::vector<bool> implicit_models(const std::vector<const ForceModel*>& models, 
 
 }  // namespace
 
-Stepper::Stepper(Index nodes, std::vector<const ForceModel*> models, ExternalForces external, IntegratorKind integrator, SolverOptions solver)
+Stepper::Stepper(Index nodes, std::vector<const ForceModel*> models, ExternalForces external, IntegratorKind integrator,
+                 SolverOptions solver, NewtonOptions newton)
     : integrator_(make_integrator(integrator)),
       models_(std::move(models)),
       external_(std::move(external)),
       assembler_(nodes, models_, implicit_models(models_, *integrator_)),
       solver_(make_solver(solver)),
+      newton_(newton),
       core_(assembler_.core_mask(ForceClass::stretch)),
       a_(assembler_.pattern()) {
   for (const ForceModel* model : models_)
     if (model->force_class() == ForceClass::stretch) core_springs_ += model->block_count();
+  if (integrator_->is_nonlinear()) relinearised_a_ = a_;
+  current_a_ = &a_;
   const std::size_t n = static_cast<std::size_t>(nodes);
   for (auto* field : {&b_, &rhs_, &z_, &unknown_, &x_end_, &v_end_, &impulse_}) field->assign(n, Vec3::Zero());
 }
@@ -41,6 +48,8 @@ void Stepper::begin(const State& state, double h) {
   external_.evaluate(state.time, state.x, state.v);
   integrator_->assemble(assembler_, external_, state, h, a_, b_);
   guess_ = state.last;
+  current_guess_ = guess_;
+  current_a_ = &a_;
   assemble_ms_ = timer.milliseconds();
 }
 
@@ -52,22 +61,76 @@ SolveSummary Stepper::solve(const ConstraintSet& constraints, std::span<const Ve
   const double per_impulse = integrator_->rhs_per_impulse(*state_, h_);
   for (std::size_t i = 0; i < impulses.size(); ++i) rhs_[i] += per_impulse * impulses[i];
   integrator_->prescribe(constraints, *state_, h_, z_);
+  current_a_ = &a_;
+  current_guess_ = guess_;
+  newton_iterations_ = 0;
   SolveSummary summary = solver.solve(system(), flat(unknown_));
+  if (integrator_->is_nonlinear() && summary.status.ok()) summary = solve_nonlinear(constraints, solver, std::move(summary));
   integrator_->finish(*state_, h_, unknown_, x_end_, v_end_);
 
-  multiply(a_, flat(unknown_), flat(impulse_));
+  multiply(*current_a_, flat(unknown_), flat(impulse_));
   for (Index i = 0; i < constraints.nodes(); ++i)
-    impulse_[i] = constraints.ndof(i) == 3 ? Vec3(Vec3::Zero()) : Vec3(constraints.constrained_part(i, impulse_[i] - rhs_[i]) / per_impulse);
+    impulse_[i] =
+        constraints.ndof(i) == 3 ? Vec3(Vec3::Zero()) : Vec3(constraints.constrained_part(i, impulse_[i] - rhs_[i]) / per_impulse);
   return summary;
+}
+
+SolveSummary Stepper::solve_nonlinear(const ConstraintSet& constraints, ConstrainedSolver& solver, SolveSummary first) {
+  const double driving = free_norm(constraints, rhs_);
+  std::vector<Vec3> external(external_.force().begin(), external_.force().end());
+  for (Vec3& f : external) f *= h_;
+  const double scale = driving + free_norm(constraints, external);
+  const NewtonProblem problem{
+      [&](std::span<const Vec3> u) { return relinearise(constraints, u); },
+      [&](std::span<const Vec3> d) {
+        return ordered_sum(constraints.nodes(), [&](Index begin, Index end) {
+          double sum = 0.0;
+          for (Index i = begin; i < end; ++i) sum += constraints.free_part(i, impulse_[i]).dot(d[i]);
+          return sum;
+        });
+      },
+      [&](std::span<Vec3> u) {
+        current_guess_.assign(u.begin(), u.end());
+        return solver.solve(system(), flat(u));
+      },
+  };
+  NewtonSummary summary = newton(problem, newton_, scale, first, unknown_);
+  newton_iterations_ = summary.iterations;
+  summary.linear.status = summary.status;
+  return summary.linear;
+}
+
+// A and b about this unknown, r = b - A u in impulse_; |S r|_(M⁻¹).
+double Stepper::relinearise(const ConstraintSet& constraints, std::span<const Vec3> unknown) {
+  Timer timer;
+  integrator_->finish(*state_, h_, unknown, x_end_, v_end_);
+  external_.evaluate(state_->time + h_, x_end_, v_end_);
+  integrator_->relinearise(assembler_, external_, h_, unknown, x_end_, v_end_, relinearised_a_, rhs_);
+  const double per_impulse = integrator_->rhs_per_impulse(*state_, h_);
+  for (std::size_t i = 0; i < given_.size(); ++i) rhs_[i] += per_impulse * given_[i];
+  current_a_ = &relinearised_a_;
+  multiply(relinearised_a_, flat(unknown), flat(impulse_));
+  for (std::size_t i = 0; i < rhs_.size(); ++i) impulse_[i] = rhs_[i] - impulse_[i];
+  assemble_ms_ += timer.milliseconds();
+  return free_norm(constraints, impulse_);
+}
+
+double Stepper::free_norm(const ConstraintSet& constraints, std::span<const Vec3> momentum) const {
+  const auto masses = external_.masses();
+  return std::sqrt(ordered_sum(constraints.nodes(), [&](Index begin, Index end) {
+    double sum = 0.0;
+    for (Index i = begin; i < end; ++i) sum += constraints.free_part(i, momentum[i]).squaredNorm() / masses[i];
+    return sum;
+  }));
 }
 
 LinearSystem Stepper::system() const {
   LinearSystem system;
-  system.matrix = &a_;
+  system.matrix = current_a_;
   system.rhs = flat(rhs_);
   system.constraints = constraints_;
   system.z = flat(z_);
-  system.guess = flat(guess_);
+  system.guess = flat(current_guess_);
   system.core = core_;
   return system;
 }

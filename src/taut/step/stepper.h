@@ -1,9 +1,11 @@
 #pragma once
-// One step: assemble -> constrain -> solve -> update. Contact may ask for several solves of the same assembled system with other constraints and
-// impulses (passes); the loop in scene/ joins the two.
+// One step: assemble -> constrain -> solve -> update. Contact may ask for several solves of the same assembled system with other
+// constraints and impulses (passes); the loop in scene/ joins the two.
 //
 //   begin(state, h)              A and b, once
-//   solve(constraints, impulses) the unknown, the end positions and velocities, the constraint impulses; may be repeated
+//   solve(constraints, impulses) the unknown, the end positions and velocities, the constraint impulses; may be repeated. One linear solve,
+//   or
+//                                with a nonlinear integrator as many as Newton's method takes
 //   commit(state, ...)           takes the last solve's end state (or a corrected one) over
 //
 // Constraint impulse (N s, on each node): j = (I - S)(A u - b), scaled to an impulse (MATH.md 3.6). A positive n·j pushes along n.
@@ -19,7 +21,8 @@ namespace taut {
 class Stepper {
  public:
   // models: not owned. core_class: which springs make the matrix core.
-  Stepper(Index nodes, std::vector<const ForceModel*> models, ExternalForces external, IntegratorKind integrator, SolverOptions solver);
+  Stepper(Index nodes, std::vector<const ForceModel*> models, ExternalForces external, IntegratorKind integrator, SolverOptions solver,
+          NewtonOptions newton = {});
 
   void begin(const State& state, double h);
   SolveSummary solve(const ConstraintSet& constraints, std::span<const Vec3> impulses) { return solve(constraints, impulses, *solver_); }
@@ -29,16 +32,19 @@ class Stepper {
   std::span<const Vec3> v_end() const { return v_end_; }
   std::span<const Vec3> constraint_impulse() const { return impulse_; }
 
-  // Ends the step: state becomes (x_end, v_end) at time + h. `corrected` positions (contact) replace x_end, the velocity is changed by what they
-  // moved over h, and a multistep method starts afresh.
+  // Ends the step: state becomes (x_end, v_end) at time + h. `corrected` positions (contact) replace x_end, the velocity is changed by what
+  // they moved over h, and a multistep method starts afresh.
   void commit(State& state);
   void commit(State& state, std::span<const Vec3> corrected);
   // The next step is of another size than the last: a multistep method must not use the step before.
   void start_afresh(State& state) const;
 
-  // The system of the last begin/solve, for dumps, benches and other solvers. Valid until the next call.
+  // The system of the last begin/solve, for dumps, benches and other solvers; of several linearisations the last. Valid until the next
+  // call.
   LinearSystem system() const;
-  const BlockCsr& matrix() const { return a_; }
+  const BlockCsr& matrix() const { return *current_a_; }
+  // Linear solves of the last solve() after its first; 0 unless the integrator is nonlinear.
+  int newton_iterations() const { return newton_iterations_; }
   std::span<const std::uint8_t> core_mask() const { return core_; }
   Index core_springs() const { return core_springs_; }
   std::span<const Vec3> unknown() const { return unknown_; }
@@ -52,6 +58,9 @@ class Stepper {
   double remainder_ratio() const { return assembler_.remainder_ratio(core_, external_.masses()); }
 
  private:
+  SolveSummary solve_nonlinear(const ConstraintSet& constraints, ConstrainedSolver& solver, SolveSummary first);
+  double relinearise(const ConstraintSet& constraints, std::span<const Vec3> unknown);
+  double free_norm(const ConstraintSet& constraints, std::span<const Vec3> momentum) const;
   void forget_other_unknown(State& state, const std::string& solved_for) const;
 
   std::unique_ptr<Integrator> integrator_;
@@ -59,6 +68,7 @@ class Stepper {
   ExternalForces external_;
   Assembler assembler_;
   std::unique_ptr<ConstrainedSolver> solver_;
+  NewtonOptions newton_;
   std::vector<std::uint8_t> core_;
   Index core_springs_ = 0;
 
@@ -66,7 +76,10 @@ class Stepper {
   const ConstraintSet* constraints_ = nullptr;
   double h_ = 0.0, assemble_ms_ = 0.0;
   BlockCsr a_;
-  std::vector<Vec3> b_, rhs_, z_, guess_, unknown_, x_end_, v_end_, impulse_, given_;
+  BlockCsr relinearised_a_;  // of nonlinear integrators; a_ stays for the next solve
+  const BlockCsr* current_a_ = nullptr;
+  int newton_iterations_ = 0;
+  std::vector<Vec3> b_, rhs_, z_, guess_, current_guess_, unknown_, x_end_, v_end_, impulse_, given_;
 };
 
 }  // namespace taut
