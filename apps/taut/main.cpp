@@ -7,10 +7,16 @@
 #ifdef TAUT_WITH_CHOLMOD
 #include "taut_cholmod/cholmod.h"
 #endif
+#ifdef TAUT_WITH_PARDISO
+#include "taut_pardiso/pardiso.h"
+#endif
 
 int main(int argc, char** argv) {
 #ifdef TAUT_WITH_CHOLMOD
   taut::register_cholmod();
+#endif
+#ifdef TAUT_WITH_PARDISO
+  taut::register_pardiso();
 #endif
   CLI::App app{"Taut: cloth dynamics whose cost does not grow with stiffness", "taut"};
   app.set_version_flag("--version", std::string("taut ") + TAUT_VERSION);

@@ -170,6 +170,17 @@ TEST(UnknownSolver, SaysWhatIsNotBuiltIn) {
     }
     EXPECT_EQ(std::ranges::count(solver_names(), name), built_in ? 1 : 0);
   }
+  // pardiso_cgs is not made in libtaut at all: its library registers it.
+  const bool pardiso = make_cholesky("pardiso") != nullptr;
+  for (const std::string name : {"pardiso", "pardiso_cgs", "core_pcg:pardiso"}) {
+    EXPECT_TRUE(is_solver_name(name));
+    const std::string message = refusal(name);
+    EXPECT_EQ(message == "made", pardiso);
+    if (!pardiso) {
+      EXPECT_TRUE(says(message, "./taut setup pardiso")) << message;
+    }
+    EXPECT_EQ(std::ranges::count(solver_names(), name), pardiso ? 1 : 0);
+  }
   // The default backend falls back, and says so.
   Random random(9);
   const ConstrainedCase c = random_case(random, {.nodes = 5});

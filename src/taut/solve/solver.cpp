@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <map>
 
 #include "taut/base/error.h"
 #include "taut/constraint/reduction.h"
@@ -25,8 +26,8 @@ namespace {
 // The list: one line a solver.
 struct Entry {
   const char* name;
-  std::unique_ptr<ConstrainedSolver> (*make)(const SolverOptions&);
-  const char* backend;  // the Cholesky it cannot do without, or null
+  std::unique_ptr<ConstrainedSolver> (*make)(const SolverOptions&);  // null: the backend's library registers it
+  const char* backend;                                               // the Cholesky it cannot do without, or null
 };
 
 const Entry entries[] = {
@@ -41,11 +42,19 @@ const Entry entries[] = {
     {"ppcg", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<Ppcg>(o); }, nullptr},
     {"eq10", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<Eq10>(o); }, nullptr},
     {"cholmod", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<Direct>(o, "cholmod"); }, "cholmod"},
+    {"pardiso", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<Direct>(o, "pardiso"); }, "pardiso"},
+    {"pardiso_cgs", nullptr, "pardiso"},
     {"eigen_ldlt", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<Direct>(o, "eigen"); }, nullptr},
     {"core_pcg", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<CorePcg>(o, ""); }, nullptr},
     {"core_pcg:cholmod", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<CorePcg>(o, "cholmod"); }, "cholmod"},
     {"core_pcg:eigen", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<CorePcg>(o, "eigen"); }, nullptr},
+    {"core_pcg:pardiso", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<CorePcg>(o, "pardiso"); }, "pardiso"},
 };
+
+std::map<std::string, SolverFactory>& registered() {
+  static std::map<std::string, SolverFactory> factories;
+  return factories;
+}
 
 const Entry* find_entry(const std::string& name) {
   for (const Entry& entry : entries)
@@ -53,7 +62,11 @@ const Entry* find_entry(const std::string& name) {
   return nullptr;
 }
 
-bool available(const Entry& entry) { return !entry.backend || make_cholesky(entry.backend) != nullptr; }
+bool available(const Entry& entry) { return entry.make ? !entry.backend || make_cholesky(entry.backend) : registered().contains(entry.name); }
+
+std::string how_to_get(const std::string& backend) {
+  return backend == "pardiso" ? "type './taut setup pardiso' (or install oneMKL and build with -DTAUT_WITH_PARDISO=ON)" : "build with -DTAUT_WITH_CHOLMOD=ON";
+}
 
 }  // namespace
 
@@ -66,9 +79,14 @@ std::unique_ptr<ConstrainedSolver> make_solver(const SolverOptions& options) {
                                  fmt::join(known, ", ")));
   }
   if (!available(*entry))
-    throw InputError(fmt::format("solver '{}' needs the {} backend, which is not built into this program; build with -DTAUT_WITH_CHOLMOD=ON, or use one of: {}",
-                                 options.name, entry->backend, fmt::join(known, ", ")));
-  return entry->make(options);
+    throw InputError(fmt::format("solver '{}' needs the {} backend, which is not built into this program; {}, or use one of: {}", options.name,
+                                 entry->backend, how_to_get(entry->backend), fmt::join(known, ", ")));
+  return entry->make ? entry->make(options) : registered().at(entry->name)(options);
+}
+
+void register_solver(const std::string& name, SolverFactory factory) {
+  assert(find_entry(name) && !find_entry(name)->make);
+  registered()[name] = std::move(factory);
 }
 
 std::vector<std::string> solver_names() {

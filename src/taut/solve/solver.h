@@ -7,8 +7,9 @@
 //   upcg:projected_block_diagonal        plain PCG on Ã with its own diagonal blocks (Boxerman & Ascher 2004)
 //   ppcg                                 pre-filtered PCG on S A S + d (I-S): size and pattern of A kept (Tamstorf et al. 2015)
 //   eq10                                 BiCGSTAB on S A + d (I-S), the paper's Eq. 10, which MATH.md shows to be equivalent after all
-//   cholmod, eigen_ldlt                  direct: sparse Cholesky of Ã                                                              (Section 4)
-//   core_pcg[:cholmod|:eigen]            PCG on Ã, preconditioned by the factorised matrix core                                    (Section 6)
+//   cholmod, pardiso, eigen_ldlt         direct: sparse Cholesky of Ã                                                              (Section 4)
+//   pardiso_cgs                          PARDISO's own CG on the factor of an earlier step, its "Pardiso(2)"; library taut_pardiso       (Table 2)
+//   core_pcg[:cholmod|:eigen|:pardiso]   PCG on Ã, preconditioned by the factorised matrix core                                    (Section 6)
 //
 // d: a mass per node, the mean of A's diagonal there, so that kilograms are not added to pure numbers. Without :VARIANT the first one listed is meant;
 // core_pcg falls back from cholmod to eigen when CHOLMOD is not built in, and says so in the summary's remark.
@@ -44,6 +45,9 @@ class ConstrainedSolver {
 
 // Throws InputError with the list of names when options.name is unknown, or known but not built in.
 std::unique_ptr<ConstrainedSolver> make_solver(const SolverOptions& options);
+// For a solver that is in the list but whose code is in a library outside libtaut. Not while solvers are being made.
+using SolverFactory = std::function<std::unique_ptr<ConstrainedSolver>(const SolverOptions&)>;
+void register_solver(const std::string& name, SolverFactory factory);
 // All names that make_solver takes in this build, default variants without suffix.
 std::vector<std::string> solver_names();
 // True for a name that would be known in a complete build (scene files are checked against this).
