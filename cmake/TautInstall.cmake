@@ -1,5 +1,5 @@
 # cmake --install: the headers, libtaut, the program, and what find_package(taut) reads. taut_cholmod goes into a component of its own
-# (find_package(taut COMPONENTS cholmod)), so that nobody links GPL code who did not ask for it.
+# (find_package(taut COMPONENTS cholmod)), so that nobody links GPL code who did not ask for it; taut_pardiso likewise.
 include(CMakePackageConfigHelpers)
 set(taut_cmake_folder ${CMAKE_INSTALL_LIBDIR}/cmake/taut)
 
@@ -17,6 +17,13 @@ if(TARGET taut_cholmod)
   install(DIRECTORY ${CMAKE_SOURCE_DIR}/src/taut_cholmod/taut_cholmod DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
   install(TARGETS taut_cholmod EXPORT tautCholmodTargets)
   install(EXPORT tautCholmodTargets NAMESPACE taut:: FILE tautCholmodTargets.cmake DESTINATION ${taut_cmake_folder})
+endif()
+
+if(TARGET taut_pardiso)
+  set_target_properties(taut_pardiso PROPERTIES EXPORT_NAME pardiso)
+  install(DIRECTORY ${CMAKE_SOURCE_DIR}/src/taut_pardiso/taut_pardiso DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
+  install(TARGETS taut_pardiso EXPORT tautPardisoTargets)
+  install(EXPORT tautPardisoTargets NAMESPACE taut:: FILE tautPardisoTargets.cmake DESTINATION ${taut_cmake_folder})
 endif()
 
 # A static libtaut leaves its private libraries for the consumer to link; a shared one has linked them itself.

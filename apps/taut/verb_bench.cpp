@@ -54,7 +54,7 @@ void add_bench_verb(CLI::App& app, int& exit_code) {
   verb->require_subcommand(1);
   verb->footer("Example: taut bench table2 --nodes 6561");
   add_bench(*verb, "table1", "Paper, Table 1: MPCG against uPCG, pinned and draping cloth", bench_table1, exit_code);
-  add_bench(*verb, "table2", "Paper, Table 2: MPCG, CHOLMOD and corePCG on a sheet hit by a ball", bench_table2, exit_code);
+  add_bench(*verb, "table2", "Paper, Table 2: MPCG, CHOLMOD, PARDISO and corePCG on a sheet hit by a ball", bench_table2, exit_code);
 }
 
 }  // namespace taut::app

@@ -32,7 +32,8 @@ void PardisoCgs::run(const LinearSystem& system, std::span<double> x, SolveSumma
   if (factorized_ && !new_pattern && all_finite(reduced_.matrix().values)) {
     solve_by_cg(summary);
   } else {
-    if (had_factor) summary.remark = new_pattern ? "factorised anew: the matrix has another pattern" : "factorised anew: the matrix is not finite";
+    if (had_factor)
+      summary.remark = new_pattern ? "factorised anew: the matrix has another pattern" : "factorised anew: the matrix is not finite";
     factorize_and_solve(new_pattern || !analyzed_ || !options_.reuse_analysis, summary);
   }
   if (!summary.status.ok()) return initial_guess(system, x);
@@ -49,8 +50,8 @@ void PardisoCgs::solve_by_cg(SolveSummary& summary) {
   summary.fell_back = cg.gave_up != nullptr;
   fallbacks_ += summary.fell_back;
   if (summary.fell_back)
-    summary.remark = fmt::format("factorised anew: CG on the kept factor gave up after {} iterations, {} (fall-back {} in {} systems)", cg.iterations,
-                                 cg.gave_up, fallbacks_, systems_);
+    summary.remark = fmt::format("factorised anew: CG on the kept factor gave up after {} iterations, {} (fall-back {} in {} systems)",
+                                 cg.iterations, cg.gave_up, fallbacks_, systems_);
   factorized_ = summary.status.ok();
 }
 

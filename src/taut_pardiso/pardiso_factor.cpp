@@ -60,8 +60,8 @@ MKL_INT PardisoFactor::call(MKL_INT phase, double* b, double* x) {
   const ThreadScope threads(mkl);
   const MKL_INT one = 1, positive_definite = 2, quiet = 0, n = static_cast<MKL_INT>(csc_.column_start.size()) - 1;
   MKL_INT error = 0;
-  mkl.pardiso(handle_.data(), &one, &one, &positive_definite, &phase, &n, csc_.value.data(), csc_.column_start.data(), csc_.row.data(), permutation_.data(),
-              &one, iparm_.data(), &quiet, b, x, &error);
+  mkl.pardiso(handle_.data(), &one, &one, &positive_definite, &phase, &n, csc_.value.data(), csc_.column_start.data(), csc_.row.data(),
+              permutation_.data(), &one, iparm_.data(), &quiet, b, x, &error);
   return error;
 }
 

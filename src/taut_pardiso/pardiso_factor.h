@@ -1,5 +1,6 @@
 #pragma once
-// One PARDISO handle for a symmetric positive definite matrix (mtype 2), its phases as member functions. Names iparm[k] are those of Intel's reference.
+// One PARDISO handle for a symmetric positive definite matrix (mtype 2), its phases as member functions. Names iparm[k] are those of
+// Intel's reference.
 
 #include <array>
 #include <span>
@@ -27,8 +28,8 @@ class PardisoFactor {
   Status factorize(const BlockCsr& a);  // phase 22
   // Phase 33. b and x may be the same memory.
   Status solve(std::span<const double> b, std::span<double> x);
-  // Phase 23 with iparm[3] = 10 digits + 2: solves a x = b by CG with the factor at hand, to 10^-digits; where CG fails, PARDISO itself factorises `a`,
-  // solves with that, and keeps the new factor.
+  // Phase 23 with iparm[3] = 10 digits + 2: solves a x = b by CG with the factor at hand, to 10^-digits; where CG fails, PARDISO itself
+  // factorises `a`, solves with that, and keeps the new factor.
   Status solve_by_cg(const BlockCsr& a, int digits, std::span<const double> b, std::span<double> x, CgReport& report);
 
   std::span<const Index> permutation() const { return permutation_; }

@@ -81,7 +81,7 @@ class Checker:
 
     def find(self, path, target):
         """The project's file that an include names, or None. A program may write its own files from its own folder; a room writes all from src."""
-        folders = [self.root / "src", self.root / "src/taut_cholmod"]
+        folders = [self.root / "src", self.root / "src/taut_cholmod", self.root / "src/taut_pardiso"]
         if self.room_of(path) is None:
             folders += [path.parent, self.root.joinpath(*path.relative_to(self.root).parts[:2])]
         return next((f / target for f in folders if (f / target).is_file()), None)

@@ -49,8 +49,9 @@ class PlantedMistakes(unittest.TestCase):
         self.expect(self.append("src/taut/contact/beside.cpp", '  #  include "taut/step/beside.h"'), "room contact", "only these rooms: base")
 
     def test_room_includes_what_stands_above(self):
-        self.append("src/taut_cholmod/taut_cholmod/above.h", "#pragma once")
-        self.expect(self.append("src/taut/solve/above.cpp", '#include "taut_cholmod/above.h"'), "stands above all rooms")
+        for library in ("taut_cholmod", "taut_pardiso"):
+            self.append(f"src/{library}/{library}/above.h", "#pragma once")
+            self.expect(self.append(f"src/taut/solve/above_{library}.cpp", f'#include "{library}/above.h"'), "stands above all rooms")
 
     def test_public_header_includes_a_private_library(self):
         self.expect(self.append("src/taut/picture/image.h", "#include <cairo.h>"), "a public header includes <cairo.h>")

@@ -1,5 +1,5 @@
 # Installs the build into an empty folder, then configures, builds and runs a project that knows only that folder.
-#   cmake -D BUILD=... -D WORK=... -D GENERATOR=... -D COMPILER=... -D HAS_APP=ON -D HAS_CHOLMOD=ON -P find_package_test.cmake
+#   cmake -D BUILD=... -D WORK=... -D GENERATOR=... -D COMPILER=... -D HAS_APP=ON -D HAS_CHOLMOD=ON -D HAS_PARDISO=ON -P find_package_test.cmake
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE code OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(NOT code EQUAL 0)
@@ -20,7 +20,8 @@ endfunction()
 file(REMOVE_RECURSE ${WORK})
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
 run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/consumer -B ${WORK}/build -G ${GENERATOR} -D CMAKE_CXX_COMPILER=${COMPILER}
-    -D CMAKE_BUILD_TYPE=Release -D CMAKE_PREFIX_PATH=${WORK}/prefix -D EXPECT_CHOLMOD=${HAS_CHOLMOD})
+    -D CMAKE_BUILD_TYPE=Release -D CMAKE_PREFIX_PATH=${WORK}/prefix -D EXPECT_CHOLMOD=${HAS_CHOLMOD}
+    -D EXPECT_PARDISO=${HAS_PARDISO})
 run(${CMAKE_COMMAND} --build ${WORK}/build)
 # A 1 m x 1 m grid of 5 x 4 nodes: rows of 5 nodes at heights 0, 1/3, 2/3 and 1.
 run_and_expect(${WORK}/build/consumer "nodes 20, triangles 24, sum of heights 10\n")

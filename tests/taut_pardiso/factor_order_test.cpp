@@ -58,8 +58,8 @@ TEST(Pardiso, HandsOutTheOrderOfItsFactor) {
   const FactorStatistics statistics = pardiso.statistics();
   const double entries = fill_in(lower, order);
   EXPECT_LE(entries, statistics.nonzeros);
-  EXPECT_GE(entries, 0.8 * statistics.nonzeros);                  // supernodes store some zeros
-  EXPECT_GE(fill_in(lower, inverse), 2.0 * statistics.nonzeros);  // so this test can tell an order from its inverse
+  EXPECT_GE(entries, 0.8 * statistics.nonzeros);                    // supernodes store some zeros
+  EXPECT_GE(fill_in(lower, inverse), 2.0 * statistics.nonzeros);    // so this test can tell an order from its inverse
   EXPECT_GE(statistics.flops + 1e6, entries * entries / a.dofs());  // Σ |L_k|² >= (Σ |L_k|)² / n; told in whole millions
   EXPECT_EQ(statistics.ordering, "metis");
 }

@@ -19,7 +19,7 @@ struct BenchOptions {
 
 // Paper, Table 1: MPCG against uPCG on few and on many constraints, 6,561 nodes, h = 3.67 ms.
 std::vector<ReportRow> bench_table1(const BenchOptions& options);
-// Paper, Table 2: a ball hits a sheet; MPCG, CHOLMOD and corePCG for three sizes and stiffnesses, semi-implicit Euler and IMEX matrices.
+// Paper, Table 2: a ball hits a sheet; MPCG, CHOLMOD, PARDISO (where built in) and corePCG for three sizes and stiffnesses, semi-implicit Euler and IMEX matrices.
 std::vector<ReportRow> bench_table2(const BenchOptions& options);
 
 }  // namespace taut::app

@@ -30,6 +30,7 @@ nlohmann::ordered_json to_json(const ReportRow& row, int threads) {
   json["precision"] = "double";
   json["steps"] = c.steps;
   json["failures"] = c.failures;
+  if (c.method.solver == "pardiso_cgs") json["factorisations"] = c.factorisations;
   json["unknowns"] = c.unknowns;
   json["held_nodes"] = c.held_nodes;
   json["nonzeros"] = c.nonzeros;

@@ -1,14 +1,15 @@
 #pragma once
-// The paper's "Pardiso(2)": a factor of the reduced matrix is kept from step to step, and PARDISO's own conjugate gradients use it as preconditioner
-// (iparm[3] = 10 L + 2). Where they fail, PARDISO factorises the new matrix by itself and keeps that factor.
+// The paper's "Pardiso(2)": a factor of the reduced matrix is kept from step to step, and PARDISO's own conjugate gradients use it as
+// preconditioner (iparm[3] = 10 L + 2). Where they fail, PARDISO factorises the new matrix by itself and keeps that factor.
 //
-//   L = ceil(-log10(tolerance)), from 1 to 15    PARDISO stops at |dx_i| / |dx_0| < 10^-L, dx the correction the preconditioner gives: a whole number of
+//   L = ceil(-log10(tolerance)), from 1 to 15    PARDISO stops at |dx_i| / |dx_0| < 10^-L, dx the correction the preconditioner gives: a
+//   whole number of
 //                                                digits, here the fewest that are no looser than the tolerance asked for
 //   summary.iterations                           of CG; 0 where none was tried
 //   summary.fell_back, summary.remark            whether CG failed and why; why there was no factor to start from
 //
-// PARDISO wants one sparsity pattern: when the pattern of Ã is new (other constraints), analysis and factorisation are done anew. Its limit is 150
-// iterations, whatever max_iterations says; the initial guess and the observer are not used.
+// PARDISO wants one sparsity pattern: when the pattern of Ã is new (other constraints), analysis and factorisation are done anew. Its limit
+// is 150 iterations, whatever max_iterations says; the initial guess and the observer are not used.
 
 #include "taut/solve/reduced_system.h"
 #include "taut/solve/solver.h"

@@ -7,10 +7,17 @@
 #ifdef WITH_CHOLMOD
 #include "taut_cholmod/cholmod.h"
 #endif
+#ifdef WITH_PARDISO
+#include "taut_pardiso/pardiso.h"
+#endif
 
 int main() {
 #ifdef WITH_CHOLMOD
   taut::register_cholmod();
+#endif
+#ifdef WITH_PARDISO
+  taut::register_pardiso();
+  if (!taut::make_cholesky("pardiso")) return 1;
 #endif
   auto cholesky = taut::make_cholesky("cholmod");
   if (!cholesky) cholesky = taut::make_cholesky("eigen");
