@@ -40,6 +40,7 @@ MklRuntime load() {
   const auto set_dynamic = find<decltype(&MKL_Set_Dynamic)>(library, "MKL_Set_Dynamic", mkl.error);
   mkl.set_num_threads_local = find<decltype(&MKL_Set_Num_Threads_Local)>(library, "MKL_Set_Num_Threads_Local", mkl.error);
   mkl.pardiso = find<decltype(&::pardiso)>(library, "pardiso", mkl.error);
+  mkl.pardiso_getdiag = find<decltype(&::pardiso_getdiag)>(library, "pardiso_getdiag", mkl.error);
   if (!mkl.error.empty()) return mkl;
   // In this order, before anything else of oneMKL is called.
   set_threading_layer(MKL_THREADING_GNU);

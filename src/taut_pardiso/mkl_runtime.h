@@ -18,6 +18,7 @@ namespace taut {
 struct MklRuntime {
   std::string error;  // not empty: oneMKL cannot be used, and why
   decltype(&::pardiso) pardiso = nullptr;
+  decltype(&::pardiso_getdiag) pardiso_getdiag = nullptr;
   int (*set_num_threads_local)(int) = nullptr;  // of the calling thread; returns what held before
 };
 

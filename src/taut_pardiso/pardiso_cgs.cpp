@@ -25,50 +25,36 @@ PardisoCgs::~PardisoCgs() = default;
 
 void PardisoCgs::run(const LinearSystem& system, std::span<double> x, SolveSummary& summary) {
   Timer timer;
-  const bool had_factor = factorized_, new_pattern = reduced_.update(system);
+  const bool new_pattern = reduced_.update(system), had_factor = has_factor_;
   ++systems_;
   summary.reduce_ms = timer.lap();
-  // NaN goes to the factorisation, which reports it.
-  if (factorized_ && !new_pattern && all_finite(reduced_.matrix().values)) {
-    solve_by_cg(summary);
-  } else {
-    if (had_factor)
-      summary.remark = new_pattern ? "factorised anew: the matrix has another pattern" : "factorised anew: the matrix is not finite";
-    factorize_and_solve(new_pattern || !analyzed_ || !options_.reuse_analysis, summary);
+  if (new_pattern || !had_factor) {
+    // A handle without a factor cannot but factorise.
+    summary.status = factor_->analyze(reduced_.matrix());
+    if (had_factor) summary.remark = "factorised anew: the matrix has another pattern";
+    has_factor_ = false;
   }
+  summary.order_ms = timer.lap();
+  if (summary.status.ok()) solve_reduced(summary);
   if (!summary.status.ok()) return initial_guess(system, x);
   reduced_.prolong_to(system, x);
   summary.memory_bytes = static_cast<double>(reduced_.matrix().bytes()) + factor_->statistics().bytes;
 }
 
-void PardisoCgs::solve_by_cg(SolveSummary& summary) {
+void PardisoCgs::solve_reduced(SolveSummary& summary) {
   Timer timer;
+  const bool had_factor = has_factor_;
   CgReport cg;
-  summary.status = factor_->solve_by_cg(reduced_.matrix(), digits_for(options_.tolerance), reduced_.rhs(), reduced_.solution(), cg);
-  summary.solve_ms = timer.lap();
-  summary.iterations = cg.iterations;
-  summary.fell_back = cg.gave_up != nullptr;
-  fallbacks_ += summary.fell_back;
-  if (summary.fell_back)
-    summary.remark = fmt::format("factorised anew: CG on the kept factor gave up after {} iterations, {} (fall-back {} in {} systems)",
-                                 cg.iterations, cg.gave_up, fallbacks_, systems_);
-  factorized_ = summary.status.ok();
-}
-
-void PardisoCgs::factorize_and_solve(bool analyze, SolveSummary& summary) {
-  Timer timer;
-  factorized_ = false;
-  if (analyze) {
-    summary.status = factor_->analyze(reduced_.matrix());
-    analyzed_ = summary.status.ok();
-  }
-  summary.order_ms = timer.lap();
-  if (summary.status.ok()) summary.status = factor_->factorize(reduced_.matrix());
-  summary.factor_ms = timer.lap();
-  if (!summary.status.ok()) return;
-  factorized_ = true;
-  summary.status = factor_->solve(reduced_.rhs(), reduced_.solution());
-  summary.solve_ms = timer.lap();
+  // NaN is for the factorisation, which refuses it.
+  summary.status = all_finite(reduced_.matrix().values)
+                       ? factor_->solve_by_cg(reduced_.matrix(), digits_for(options_.tolerance), reduced_.rhs(), reduced_.solution(), cg)
+                       : factor_->factorize(reduced_.matrix());
+  has_factor_ = summary.status.ok();
+  (cg.factorized ? summary.factor_ms : summary.solve_ms) = timer.lap();
+  summary.iterations = cg.factorized ? 0 : cg.iterations;
+  if (!cg.factorized || !had_factor) return;
+  ++fallbacks_;
+  summary.remark = fmt::format("factorised anew: CG on the kept factor gave up (fall-back {} in {} systems)", fallbacks_, systems_);
 }
 
 }  // namespace taut

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cassert>
+#include <cstdlib>
 
 #include "taut/base/parallel.h"
 
@@ -33,24 +34,8 @@ std::array<MKL_INT, 64> settings() {
   iparm[17] = -1;  // count the factor's nonzeros
   iparm[18] = -1;  // and the factorisation's operations
   iparm[34] = 1;   // indices from 0
+  iparm[55] = 1;   // hand out the factor's diagonal
   return iparm;
-}
-
-const char* reason_of(MKL_INT cgs_error) {
-  switch (cgs_error) {
-    case 1:
-      return "its residual fluctuated";
-    case 2:
-      return "it converged slowly";
-    case 3:
-      return "it did not converge in 150 iterations";
-    case 4:
-      return "pivots were perturbed";
-    case 5:
-      return "factorising is faster for this matrix";
-    default:
-      return "for an unknown reason";
-  }
 }
 
 }  // namespace
@@ -85,6 +70,7 @@ void PardisoFactor::release() {
   if (holds_memory_) call(-1);
   holds_memory_ = false;
   handle_.fill(nullptr);
+  factor_diagonal_.clear();
 }
 
 Status PardisoFactor::analyze(const BlockCsr& a) {
@@ -117,13 +103,23 @@ Status PardisoFactor::solve_by_cg(const BlockCsr& a, int digits, std::span<const
   if (csc_.row.empty()) return {};
   rhs_.assign(b.begin(), b.end());
   iparm_[3] = 10 * digits + 2;
-  iparm_[19] = 0;
   const MKL_INT error = call(23, rhs_.data(), x.data());
   iparm_[3] = 0;
-  const MKL_INT outcome = iparm_[19];  // iterations, or -(10 iterations + reason)
-  report.iterations = outcome >= 0 ? outcome : -outcome / 10;
-  if (outcome < 0) report.gave_up = reason_of(-outcome % 10);
-  return status_from(error, "CG on the kept factor");
+  report.iterations = std::abs(iparm_[19]);
+  report.factorized = error != 0 || factor_is_new();
+  return status_from(error, "solve by CG");
+}
+
+// Whether the factor is another than when this was last asked. Intel's reference has a negative iparm[19] for CG that failed, but once
+// PARDISO has factorised, it solves by CG with the new factor and iparm[19] tells of that. The diagonal of the factor does not hide it.
+bool PardisoFactor::factor_is_new() {
+  const MKL_INT one = 1;
+  MKL_INT error = 0;
+  std::vector<double> factor(permutation_.size()), matrix(permutation_.size());
+  mkl_runtime().pardiso_getdiag(handle_.data(), factor.data(), matrix.data(), &one, &error);
+  if (error == 0 && factor == factor_diagonal_) return false;
+  factor_diagonal_ = std::move(factor);
+  return true;
 }
 
 FactorStatistics PardisoFactor::statistics() const {

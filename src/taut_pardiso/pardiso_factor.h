@@ -11,10 +11,10 @@
 
 namespace taut {
 
-// What PARDISO's conjugate gradients did (iparm[19]).
+// What PARDISO's conjugate gradients did.
 struct CgReport {
-  int iterations = 0;
-  const char* gave_up = nullptr;  // why it factorised the matrix after all; null: it did not have to
+  int iterations = 0;       // iparm[19]
+  bool factorized = false;  // the factor is a new one
 };
 
 class PardisoFactor {
@@ -28,8 +28,8 @@ class PardisoFactor {
   Status factorize(const BlockCsr& a);  // phase 22
   // Phase 33. b and x may be the same memory.
   Status solve(std::span<const double> b, std::span<double> x);
-  // Phase 23 with iparm[3] = 10 digits + 2: solves a x = b by CG with the factor at hand, to 10^-digits; where CG fails, PARDISO itself
-  // factorises `a`, solves with that, and keeps the new factor.
+  // Phase 23 with iparm[3] = 10 digits + 2: solves a x = b by CG, to 10^-digits, with the factor that the last call of this function left.
+  // Where there is none since analyze(), or CG fails, PARDISO factorises `a`, solves with that, and keeps it.
   Status solve_by_cg(const BlockCsr& a, int digits, std::span<const double> b, std::span<double> x, CgReport& report);
 
   std::span<const Index> permutation() const { return permutation_; }
@@ -38,6 +38,7 @@ class PardisoFactor {
  private:
   MKL_INT call(MKL_INT phase, double* b = nullptr, double* x = nullptr);
   Status status_from(MKL_INT error, const char* phase) const;
+  bool factor_is_new();
   void release();
 
   std::array<void*, 64> handle_{};
@@ -45,7 +46,7 @@ class PardisoFactor {
   bool holds_memory_ = false;
   ScalarCsc csc_;
   std::vector<Index> permutation_;
-  std::vector<double> rhs_;
+  std::vector<double> rhs_, factor_diagonal_;
 };
 
 }  // namespace taut

@@ -2,20 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include "linalg/random_matrix.h"
+#include "sheet.h"
 #include "taut_pardiso/pardiso.h"
 
 namespace taut::test {
 namespace {
-
-// A sheet of side x side nodes, each coupled to its eight neighbours.
-BlockCsr sheet(Random& random, Index side) {
-  std::vector<std::vector<Index>> columns(static_cast<std::size_t>(side * side));
-  for (Index i = 0; i < side * side; ++i)
-    for (Index j = 0; j < side * side; ++j)
-      if (i != j && std::abs(i % side - j % side) <= 1 && std::abs(i / side - j / side) <= 1) columns[i].push_back(j);
-  return random_spd(random, make_pattern(std::move(columns), 3));
-}
 
 // Entries of L when unknown order[k] is eliminated k-th (Liu's elimination tree: row k of L is what the tree paths from A's row k pass).
 double fill_in(const ScalarCsc& lower, std::span<const Index> order) {

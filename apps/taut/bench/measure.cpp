@@ -129,7 +129,7 @@ class Campaign {
     }
     c.steps += 1;
     c.failures += !s.status.ok();
-    c.factorisations += method_hides_iterates(c.method) && (s.iterations == 0 || s.fell_back);
+    c.factorisations += method_hides_iterates(c.method) && s.iterations == 0;
     c.iterations += s.iterations;
     c.assemble_ms += stepper.assemble_ms();
     const double setup = s.reduce_ms + s.order_ms + s.factor_ms;

@@ -38,7 +38,7 @@ struct Cell {
   double spmv_ms = 0.0;
   double nonzeros = 0.0;         // of the (reduced) matrix
   int failures = 0;
-  int factorisations = 0;        // pardiso_cgs: steps in which CG on the kept factor was not possible, or failed
+  int factorisations = 0;        // pardiso_cgs: steps in which CG on the kept factor was not possible, or given up
   Index unknowns = 0, held_nodes = 0;
 };
 

@@ -87,7 +87,7 @@ std::vector<ReportRow> bench_table2(const BenchOptions& options) {
       "full matrix; \"with asm.\": both with assembly, as the paper counts. \"to 1e-3\": time and iterations to an A-norm error of 1e-3 in the reduced unknowns.\n"
       "A-error: at the paper's stop rule with tol = {:g}. paper: iterations and time relative to its CHOLMOD on the full matrix.\n"
       "pardiso: analysis, factorisation and solve in each step; pardiso_cgs: its CG on the factor of an earlier step, \"factorised\": the steps in which that was not\n"
-      "possible (other constraints, or CG failed).\n",
+      "possible (other constraints, or CG given up).\n",
       options.steps, options.tolerance);
   return rows;
 }

@@ -43,7 +43,6 @@ struct SolveSummary {
   double factor_ms = 0.0;        // numerical factorisation or other set-up of the preconditioner
   double solve_ms = 0.0;         // the loop, or the triangular solves
   double memory_bytes = 0.0;     // what the method holds beyond A and the vectors
-  bool fell_back = false;        // the cheap way failed and the matrix was factorised after all (pardiso_cgs)
   std::string remark;            // "on eigen: CHOLMOD is not built in", ...
   double total_ms() const { return reduce_ms + order_ms + factor_ms + solve_ms; }
 };

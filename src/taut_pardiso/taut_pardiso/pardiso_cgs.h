@@ -2,14 +2,18 @@
 // The paper's "Pardiso(2)": a factor of the reduced matrix is kept from step to step, and PARDISO's own conjugate gradients use it as
 // preconditioner (iparm[3] = 10 L + 2). Where they fail, PARDISO factorises the new matrix by itself and keeps that factor.
 //
-//   L = ceil(-log10(tolerance)), from 1 to 15    PARDISO stops at |dx_i| / |dx_0| < 10^-L, dx the correction the preconditioner gives: a
-//   whole number of
-//                                                digits, here the fewest that are no looser than the tolerance asked for
-//   summary.iterations                           of CG; 0 where none was tried
-//   summary.fell_back, summary.remark            whether CG failed and why; why there was no factor to start from
+//   L = ceil(-log10(tolerance)), from 1 to 15   PARDISO stops at |dx_i| / |dx_0| < 10^-L, dx the correction that the preconditioner gives:
+//   a whole number
+//                                               of digits, here the fewest that are no looser than the tolerance asked for
+//   summary.iterations                          of CG on the kept factor; 0 where the matrix was factorised
+//   summary.factor_ms                           of factorisation and solve, which PARDISO then does in one call, and of CG that was in vain
+//   summary.remark                              why a kept factor was given up: other pattern, or a fall-back (with their count so far)
 //
 // PARDISO wants one sparsity pattern: when the pattern of Ã is new (other constraints), analysis and factorisation are done anew. Its limit
 // is 150 iterations, whatever max_iterations says; the initial guess and the observer are not used.
+//
+// Not reproducible: PARDISO also gives CG up when factorising seems faster to it, and asks a clock. The same systems may so be solved by CG
+// in one run and by a factorisation in the next, both within the tolerance. oneMKL has no setting against this.
 
 #include "taut/solve/reduced_system.h"
 #include "taut/solve/solver.h"
@@ -27,12 +31,11 @@ class PardisoCgs : public ConstrainedSolver {
   void run(const LinearSystem& system, std::span<double> x, SolveSummary& summary) override;
 
  private:
-  void solve_by_cg(SolveSummary& summary);
-  void factorize_and_solve(bool analyze, SolveSummary& summary);
+  void solve_reduced(SolveSummary& summary);
 
   std::unique_ptr<PardisoFactor> factor_;
   ReducedSystem reduced_;
-  bool analyzed_ = false, factorized_ = false;
+  bool has_factor_ = false;
   int systems_ = 0, fallbacks_ = 0;
 };
 
