@@ -56,6 +56,8 @@ void Eq10::run(const LinearSystem& system, std::span<double> x, SolveSummary& su
   blocks ? filter_matrix(*system.matrix, system.constraints, filtered_) : filter_rows(*system.matrix, system.constraints, filtered_);
   summary.reduce_ms = timer.lap();
   summary.status = m_->update(filtered_);
+  // ILU(0) does not mind a matrix that is not positive definite; what the diagonal shows of that is told all the same.
+  if (!blocks && summary.status.ok()) summary.status = BlockDiagonalPreconditioner().update(*system.matrix);
   initial_guess(system, x);
   summary.factor_ms = timer.lap();
   summary.memory_bytes = static_cast<double>(filtered_.bytes() + m_->bytes()) + 8.0 * sizeof(double) * x.size();
