@@ -15,6 +15,7 @@
 
 #include "taut/base/status.h"
 #include "taut/linalg/block_csr.h"
+#include "taut/linalg/near_null_space.h"
 
 namespace taut {
 
@@ -25,6 +26,8 @@ class Preconditioner {
   virtual void apply(std::span<const double> r, std::span<double> z) const = 0;
   virtual Offset bytes() const { return 0; }
   virtual std::string remark() const { return {}; }
+  // For multigrid: told before update(); others do not need it.
+  virtual void set_near_null_space(NearNullSpace) {}
 };
 
 // M_p = diag(A): the scalar diagonal (Baraff & Witkin 1998).

@@ -25,6 +25,7 @@ void Ppcg::run(const LinearSystem& system, std::span<double> x, SolveSummary& su
   const BlockCsr& source = choice_.source == PreconditionerSource::core ? source_.full(system, choice_.source) : filtered_;
   summary.reduce_ms = timer.lap();
   if (!m_ || !options_.reuse_analysis) m_ = choice_.make(options_, nullptr);
+  if (choice_.wants_near_null_space) m_->set_near_null_space(near_null_space(system, false));
   summary.status = m_->update(source);
   summary.remark = m_->remark();
   summary.factor_ms = timer.lap();

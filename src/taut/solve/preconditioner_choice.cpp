@@ -3,6 +3,7 @@
 #include <cassert>
 
 #include "taut/linalg/incomplete_cholesky.h"
+#include "taut/linalg/smoothed_aggregation.h"
 #include "taut/linalg/ssor.h"
 #include "taut/solve/filtered_matrix.h"
 #include "taut/solve/node_preconditioner.h"
@@ -36,6 +37,7 @@ const PreconditionerChoice projected_block_diagonal{blocks, make_plain<BlockDiag
 const PreconditionerChoice ic0{constrained, make_plain<BlockIncompleteCholesky>};
 const PreconditionerChoice ic0_core{core, make_plain<BlockIncompleteCholesky>};
 const PreconditionerChoice ssor{constrained, make_ssor};
+const PreconditionerChoice amg{constrained, make_plain<SmoothedAggregation>, true};
 }  // namespace preconditioner
 
 std::vector<std::uint8_t> core_mask(const LinearSystem& system) {
@@ -43,6 +45,24 @@ std::vector<std::uint8_t> core_mask(const LinearSystem& system) {
   if (mask.empty()) mask.assign(static_cast<std::size_t>(system.matrix->pattern->blocks()), 0);
   assert(static_cast<Index>(mask.size()) == system.matrix->pattern->blocks());
   return mask;
+}
+
+NearNullSpace near_null_space(const LinearSystem& system, bool reduced) {
+  const BlockPattern& p = *system.matrix->pattern;
+  if (p.uniform_dim != 3) return {};
+  NearNullSpace space = rigid_motions(p.rows(), system.positions);
+  if (!system.constraints) return space;
+  const std::size_t modes = static_cast<std::size_t>(space.modes), n = static_cast<std::size_t>(p.dofs());
+  const std::size_t rows = reduced ? static_cast<std::size_t>(system.constraints->free_dofs()) : n;
+  NearNullSpace result{space.modes, std::vector<double>(rows * modes)};
+  std::vector<double> full(n), part(rows);
+  for (std::size_t m = 0; m < modes; ++m) {
+    for (std::size_t r = 0; r < n; ++r) full[r] = space.values[r * modes + m];
+    reduced ? restrict_to_free(system.constraints, full, part) : project_free(system.constraints, full);
+    const std::vector<double>& mode = reduced ? part : full;
+    for (std::size_t r = 0; r < rows; ++r) result.values[r * modes + m] = mode[r];
+  }
+  return result;
 }
 
 const BlockCsr& PreconditionerMatrix::reduced(const LinearSystem& system, PreconditionerSource source, const BlockCsr& reduced_matrix) {

@@ -27,6 +27,7 @@ struct PreconditionerChoice {
   PreconditionerSource source;
   // The constraints are given where they are needed: for unconstrained sources in the reduced space. They need not outlive update().
   std::unique_ptr<Preconditioner> (*make)(const SolverOptions& options, const ConstraintSet* constraints);
+  bool wants_near_null_space = false;
 };
 
 namespace preconditioner {
@@ -35,7 +36,12 @@ extern const PreconditionerChoice block_diagonal;            // the diagonal blo
 extern const PreconditionerChoice reduced_diagonal;          // diag(Ã): depends on the choice of U; for uPCG only
 extern const PreconditionerChoice projected_block_diagonal;  // the diagonal blocks of Ã
 extern const PreconditionerChoice ic0, ic0_core, ssor;
+extern const PreconditionerChoice amg;  // not block-wise: for uPCG and the pre-filtered form, which do not need it to commute with S
 }  // namespace preconditioner
+
+// The rigid motions of the free unknowns, S R or Uᵀ R; only translations where the system has no positions, empty where its nodes are not
+// in space.
+NearNullSpace near_null_space(const LinearSystem& system, bool reduced);
 
 // Forms the source matrix and keeps its memory and pattern from one step to the next. The references hold until the next call.
 class PreconditionerMatrix {

@@ -9,6 +9,7 @@
 //      reduced_diagonal                  upcg: diag(Ã), which depends on the choice of U
 //      ic0, ic0_core                     incomplete Cholesky on node blocks, of Ã or of the matrix core (linalg/incomplete_cholesky.h)
 //      ssor                              symmetric Gauss-Seidel, or SolverOptions::ssor_omega (linalg/ssor.h)
+//      amg                               upcg, ppcg: smoothed aggregation with the rigid motions (linalg/smoothed_aggregation.h)
 //   eq10[:block_diagonal|:ilu0]          BiCGSTAB on S A + d (I-S), the paper's Eq. 10, which MATH.md shows to be equivalent after all
 //   cholmod, eigen_ldlt                  direct: sparse Cholesky of Ã                                                              (Section 4)
 //   core_pcg[:cholmod|:eigen]            PCG on Ã, preconditioned by the factorised matrix core                                    (Section 6)

@@ -13,6 +13,7 @@ void Upcg::run(const LinearSystem& system, std::span<double> x, SolveSummary& su
   // Those made from the constraints know nothing that could be kept.
   if (!m_ || !options_.reuse_analysis || choice_.source == PreconditionerSource::unconstrained)
     m_ = choice_.make(options_, system.constraints);
+  if (choice_.wants_near_null_space) m_->set_near_null_space(near_null_space(system, true));
   summary.status = m_->update(source);
   summary.remark = m_->remark();
   summary.factor_ms = timer.lap();
