@@ -2,13 +2,11 @@
 // Algebraic multigrid by smoothed aggregation, one V-cycle as M_p⁻¹ (Vaněk, Mandel & Brezina 1996; for cloth: Tamstorf, Jones & McCormick
 // 2015).
 //
-//   groups of neighbouring nodes -> P̂: the near-null space of each group, orthonormalised -> P = (I - ω D⁻¹ A) P̂ -> A_coarse = Pᵀ A P ->
-//   ...
+//   groups of nodes -> P̂: the near-null space of each group, orthonormalised -> P = (I - ω D⁻¹ A) P̂ -> A_coarse = Pᵀ A P -> ...
 //
 //   D        diagonal blocks of A        ω = 4 / (3 λ), λ ≈ λmax(D⁻¹A)
 //   smoother Chebyshev polynomial of degree `smoother_degree` in D⁻¹A over [λ/`smoother_range`, 1.1 λ], before and after the coarse
-//   correction:
-//            symmetric, so M_p suits conjugate gradients, and parallel with the same bits for any number of threads
+//            correction: symmetric, so M_p suits conjugate gradients; parallel, with the same bits for any number of threads
 //   coarsest dense Cholesky, at `coarsest_nodes` nodes or fewer
 //
 // The near-null space makes the method: with the rigid motions (linalg/near_null_space.h) a coarse node has six unknowns, three

@@ -9,9 +9,8 @@
 //   node[p]        the node at place p; dof[p], dim[p]: its first unknown in A and their number
 //   lower          the blocks (i, j) of A with j before i, row after row, columns as places, ascending; source = which block of A's pattern
 //   upper          those with j after i, likewise
-//   block          rows and columns of every stored block: 1 when no node has more than one unknown, else 3, smaller blocks padded with
-//   zeros
-//                  (the diagonal with ones), so that one kernel serves all nodes
+//   block          rows and columns of every stored block: 1 when no node has more than one unknown, else 3; smaller blocks are
+//                  padded with zeros (the diagonal with ones), so that one kernel serves all nodes
 // A pattern that is not symmetric is ordered as if it were.
 
 #include <vector>

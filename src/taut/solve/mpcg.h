@@ -5,8 +5,8 @@
 //   r = S(b - A x)    c = S M_p⁻¹ r    δ = rᵀ c
 //   while δ > tol² δ0:   q = S A c    α = δ/(cᵀq)    x += α c    r -= α q    s = M_p⁻¹ r    δ' = rᵀ s    c = S(s + δ'/δ c)
 //
-// S is the identity but at the constrained nodes: it is applied there only, right behind the matrix product. Preconditioners that couple nodes are made
-// from S A S + d (I-S), see solve/preconditioner_choice.h.
+// S is the identity but at the constrained nodes: it is applied there only, right behind the matrix product. Preconditioners that couple
+// nodes are made from S A S + d (I-S), see solve/preconditioner_choice.h.
 
 #include "taut/solve/preconditioner_choice.h"
 #include "taut/solve/solver.h"

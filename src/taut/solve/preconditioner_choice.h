@@ -1,9 +1,8 @@
 #pragma once
 // What a conjugate gradient solver is preconditioned by: how the preconditioner is made, and which matrix it is made from.
 //
-//   unconstrained   A; in full space S M_p⁻¹ S, in the reduced one Uᵀ M_p⁻¹ U (node-wise preconditioners only: for others that is a poor
-//   inverse,
-//                   because M_p⁻¹ lets held nodes move)
+//   unconstrained   A; in full space S M_p⁻¹ S, in the reduced one Uᵀ M_p⁻¹ U. Node-wise preconditioners only: others would make a
+//                   poor inverse, because their M_p⁻¹ lets held nodes move
 //   constrained     Ã = Uᵀ A U, in full space S A S + d (I-S)
 //   core            the same of the matrix core (paper Section 6)
 //   blocks          the same of A's diagonal blocks (Boxerman & Ascher 2004)
