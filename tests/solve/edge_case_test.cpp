@@ -90,7 +90,7 @@ TEST_P(EdgeCase, IndefiniteMatrixIsReported) {
   });
   const Eigen::MatrixXd u = c.dense_u();
   ASSERT_LT((u.transpose() * dense(c.a) * u).selfadjointView<Eigen::Lower>().eigenvalues().minCoeff(), -1.0);
-  if (GetParam() != "eq10") return expect_refused(c, {Outcome::not_positive_definite});
+  if (!GetParam().starts_with("eq10")) return expect_refused(c, {Outcome::not_positive_definite});
   std::vector<double> x;
   if (solve(c, x).status.ok()) {
     EXPECT_LT(relative_difference(x, c.solution()), 1e-6);

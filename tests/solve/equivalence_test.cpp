@@ -60,14 +60,70 @@ TEST(MpcgAndUpcg, AgreeIterationByIteration) {
       }
 }
 
-// The pre-filtered form with its own diagonal blocks is uPCG with the blocks of Ã, in the larger space.
-TEST(PpcgAndUpcg, AgreeIterationByIteration) {
-  for (std::uint32_t seed = 1; seed <= 4; ++seed) {
-    const ConstrainedCase c = stiff_case(seed);
-    const History ppcg = solved(c, "ppcg", 1e-6), upcg = solved(c, "upcg:projected_block_diagonal", 1e-6);
-    EXPECT_EQ(ppcg.summary.iterations, upcg.summary.iterations);
-    EXPECT_LT(largest_difference(ppcg, upcg), 1e-9);
+void expect_same_iterates(const ConstrainedCase& c, const std::string& one, const std::string& other) {
+  SCOPED_TRACE(one + ", " + other);
+  const History a = solved(c, one, 1e-6), b = solved(c, other, 1e-6);
+  EXPECT_EQ(a.summary.iterations, b.summary.iterations);
+  EXPECT_GT(a.summary.iterations, 3);
+  EXPECT_LT(largest_difference(a, b), 1e-9);
+}
+
+// The pre-filtered form with its own diagonal blocks is uPCG with the blocks of Ã, in the larger space; and so with every block-wise preconditioner
+// of S A S + d (I-S), in MPCG too.
+TEST(BlockwisePreconditioners, AreTheSameInEveryForm) {
+  for (const FrameChoice frames : {FrameChoice::duff, FrameChoice::paper_eq13})
+    for (std::uint32_t seed = 1; seed <= 4; ++seed) {
+      const ConstrainedCase c = stiff_case(seed, frames);
+      expect_same_iterates(c, "ppcg", "upcg:projected_block_diagonal");
+      expect_same_iterates(c, "mpcg:projected_block_diagonal", "upcg:projected_block_diagonal");
+      for (const std::string kind : {"ic0", "ic0_core", "ssor"})
+        for (const std::string form : {"mpcg:", "ppcg:"}) expect_same_iterates(c, form + kind, "upcg:" + kind);
+    }
+}
+
+// Of the pattern's subsets, the core with all blocks is the matrix, with none its block diagonal.
+TEST(IncompleteCholeskyOfTheCore, BetweenWholeAndBlockDiagonal) {
+  ConstrainedCase c = stiff_case(5);
+  EXPECT_GT(largest_difference(solved(c, "upcg:ic0_core", 1e-6), solved(c, "upcg:ic0", 1e-6)), 1e-4);
+  c.core.assign(c.core.size(), 1);
+  expect_same_iterates(c, "upcg:ic0_core", "upcg:ic0");
+  c.core.clear();
+  expect_same_iterates(c, "upcg:ic0_core", "upcg:projected_block_diagonal");
+}
+
+// The test case's core is a chain: its incomplete factor is complete.
+TEST(IncompleteCholeskyOfTheCore, OfAChainIsCorePcg) {
+  for (std::uint32_t seed = 1; seed <= 3; ++seed) expect_same_iterates(stiff_case(seed), "upcg:ic0_core", "core_pcg:eigen");
+}
+
+// Positive definite, but IC(0) breaks down on it: the shift is found, told, and the solution found with it.
+TEST(IncompleteCholesky, TellsItsShift) {
+  // Kershaw's matrix (1978) in each of three directions; one node held in one of them.
+  ConstrainedCase c;
+  c.a = BlockCsr(make_pattern({{1, 3}, {0, 2}, {1, 3}, {0, 2}}, 3));
+  for_each_entry(c.a, [](Index row, Index column, double& value) {
+    const Index i = row / 3, j = column / 3;
+    if (row % 3 == column % 3) value = i == j ? 3.0 : std::abs(i - j) == 3 ? 2.0 : -2.0;
+  });
+  Random random(8);
+  c.b = random.vector(12), c.z = random.vector(12);
+  c.constraints.reset(4);
+  c.constrain(1, random.direction());
+  for (const std::string form : {"upcg:ic0", "mpcg:ic0", "ppcg:ic0"}) {
+    const History found = solved(c, form, 1e-10);
+    EXPECT_NE(found.summary.remark.find("raised by"), std::string::npos) << found.summary.remark;
+    EXPECT_LT(relative_difference(found.x, c.solution()), 1e-7);
   }
+}
+
+TEST(Ssor, TakesItsFactorFromTheOptions) {
+  const ConstrainedCase c = stiff_case(3);
+  SolverOptions options = solver_options("upcg:ssor", 1e-6);
+  const History plain = solved(c, options);
+  options.ssor_omega = 1.5;
+  const History relaxed = solved(c, options);
+  EXPECT_GT(largest_difference(plain, relaxed), 1e-4);
+  EXPECT_LT(relative_difference(relaxed.x, as_eigen(plain.x)), 1e-3);
 }
 
 Eigen::VectorXd reduced_eigenvalues(const ConstrainedCase& c) {
@@ -88,7 +144,8 @@ TEST(ChoiceOfU, IsSeenByTheReducedScalarDiagonalOnly) {
   const ConstrainedCase duff = stiff_case(1), eq13 = stiff_case(1, FrameChoice::paper_eq13);
   const auto difference = [&](const std::string& name) { return largest_difference(solved(duff, name, 1e-6), solved(eq13, name, 1e-6)); };
   for (const std::string name :
-       {"mpcg:diagonal", "mpcg:block_diagonal", "upcg:diagonal", "upcg:block_diagonal", "upcg:projected_block_diagonal", "ppcg"})
+       {"mpcg:diagonal", "mpcg:block_diagonal", "upcg:diagonal", "upcg:block_diagonal", "upcg:projected_block_diagonal", "ppcg",
+        "upcg:ic0", "upcg:ic0_core", "upcg:ssor"})
     EXPECT_LT(difference(name), 1e-9) << name;
   EXPECT_GT(difference("upcg:reduced_diagonal"), 1e-5);
 }
@@ -103,7 +160,7 @@ TEST(Eq10, IsEquivalentAfterAll) {
   for (std::uint32_t seed = 1; seed <= 4; ++seed) {
     const ConstrainedCase c = stiff_case(seed);
     const History direct = solved(c, "eigen_ldlt", 1e-12);
-    for (const std::string name : {"eq10", "ppcg"})
+    for (const std::string name : {"eq10", "eq10:ilu0", "ppcg"})
       EXPECT_LT(relative_difference(solved(c, name, 1e-12).x, as_eigen(direct.x)), 1e-9) << name;
   }
 }

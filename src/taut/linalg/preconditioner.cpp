@@ -7,33 +7,17 @@
 #include <cmath>
 
 #include "taut/base/parallel.h"
-#include "taut/base/simd.h"
 #include "taut/linalg/vector_ops.h"
 
 namespace taut {
 
 namespace {
 
-constexpr Index entries_per_task = 16384;
 constexpr Index nodes_per_task = 4096;
-
-TAUT_MULTIVERSION void scale_kernel(const double* s, const double* r, double* z, Index n) {
-#pragma omp simd
-  for (Index i = 0; i < n; ++i) z[i] = s[i] * r[i];
-}
 
 Status bad_diagonal(Index i, double value) {
   const Outcome outcome = std::isfinite(value) ? Outcome::not_positive_definite : Outcome::not_finite;
   return {outcome, fmt::format("diagonal entry of unknown {} is {}; it must be positive and finite", i, value)};
-}
-
-Status bad_block(const BlockCsr& a, Index node) {
-  const BlockPattern& p = *a.pattern;
-  const double* block = a.block(node, p.diagonal[node]);
-  for (Index r = 0; r < p.dim(node); ++r)
-    if (!all_finite({block + r * p.width(node), static_cast<std::size_t>(p.dim(node))}))
-      return {Outcome::not_finite, fmt::format("the diagonal block of node {} is not finite", node)};
-  return {Outcome::not_positive_definite, fmt::format("the diagonal block of node {} is not positive definite", node)};
 }
 
 template <int dim>
@@ -52,12 +36,26 @@ bool invert_fixed(const double* block, Index stride, double* inverse) {
 
 }  // namespace
 
+Status bad_diagonal_block(const BlockCsr& a, Index node) {
+  const BlockPattern& p = *a.pattern;
+  const double* block = a.block(node, p.diagonal[node]);
+  for (Index r = 0; r < p.dim(node); ++r)
+    if (!all_finite({block + r * p.width(node), static_cast<std::size_t>(p.dim(node))}))
+      return {Outcome::not_finite, fmt::format("the diagonal block of node {} is not finite", node)};
+  return {Outcome::not_positive_definite, fmt::format("the diagonal block of node {} is not positive definite", node)};
+}
+
 bool invert_small(const double* block, Index stride, Index dim, double* inverse) {
   switch (dim) {
-    case 0: return true;
-    case 1: return invert_fixed<1>(block, stride, inverse);
-    case 2: return invert_fixed<2>(block, stride, inverse);
-    default: assert(dim == 3); return invert_fixed<3>(block, stride, inverse);
+    case 0:
+      return true;
+    case 1:
+      return invert_fixed<1>(block, stride, inverse);
+    case 2:
+      return invert_fixed<2>(block, stride, inverse);
+    default:
+      assert(dim == 3);
+      return invert_fixed<3>(block, stride, inverse);
   }
 }
 
@@ -72,8 +70,7 @@ Status DiagonalPreconditioner::update(const BlockCsr& a) {
 
 void DiagonalPreconditioner::apply(std::span<const double> r, std::span<double> z) const {
   assert(r.size() == inverse_.size() && z.size() == inverse_.size());
-  parallel_for(static_cast<Index>(r.size()), entries_per_task,
-               [&](Index begin, Index end) { scale_kernel(&inverse_[begin], &r[begin], &z[begin], end - begin); });
+  multiply_each(inverse_, r, z);
 }
 
 Status BlockDiagonalPreconditioner::update(const BlockCsr& a) {
@@ -81,7 +78,8 @@ Status BlockDiagonalPreconditioner::update(const BlockCsr& a) {
   const BlockPattern& p = *pattern_;
   inverse_.assign(9 * static_cast<std::size_t>(p.rows()), 0.0);
   for (Index i = 0; i < p.rows(); ++i)
-    if (!invert_small(a.block(i, p.diagonal[i]), p.width(i), p.dim(i), &inverse_[9 * static_cast<std::size_t>(i)])) return bad_block(a, i);
+    if (!invert_small(a.block(i, p.diagonal[i]), p.width(i), p.dim(i), &inverse_[9 * static_cast<std::size_t>(i)]))
+      return bad_diagonal_block(a, i);
   return {};
 }
 

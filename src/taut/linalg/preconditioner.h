@@ -1,16 +1,20 @@
 #pragma once
-// A preconditioner M_p: an approximation of A whose inverse is cheap to apply. It owns what it needs and may outlive the matrix it was built from.
+// A preconditioner M_p: an approximation of A whose inverse is cheap to apply. It owns what it needs and may outlive the matrix it was
+// built from.
 //
 //   update(A)    prepares M_p⁻¹ from the values of A. Not ok: M_p is not positive definite or not finite; say where.
-//   apply(r, z)  z = M_p⁻¹ r; symmetric positive definite in r; r and z do not overlap; does not allocate after update.
+//   apply(r, z)  z = M_p⁻¹ r, symmetric positive definite in r where conjugate gradients are to use it; r and z do not overlap; does not
+//                allocate after update. One object is used by one thread at a time.
+//   remark()     what a user should know about the last update (a shift that was needed), or empty
 
 #include <memory>
 #include <span>
-#include <string_view>
+#include <string>
 #include <vector>
 
 #include "taut/base/status.h"
 #include "taut/linalg/block_csr.h"
+#include "taut/linalg/near_null_space.h"
 
 namespace taut {
 
@@ -20,6 +24,9 @@ class Preconditioner {
   virtual Status update(const BlockCsr& a) = 0;
   virtual void apply(std::span<const double> r, std::span<double> z) const = 0;
   virtual Offset bytes() const { return 0; }
+  virtual std::string remark() const { return {}; }
+  // For multigrid: told before update(); others do not need it.
+  virtual void set_near_null_space(NearNullSpace) {}
 };
 
 // M_p = diag(A): the scalar diagonal (Baraff & Witkin 1998).
@@ -48,5 +55,7 @@ class BlockDiagonalPreconditioner : public Preconditioner {
 
 // Inverse of a symmetric positive definite dim x dim block (dim <= 3) with the given row strides. False if a pivot is not positive.
 bool invert_small(const double* block, Index stride, Index dim, double* inverse);
+// What is wrong with the diagonal block of a node that invert_small refused.
+Status bad_diagonal_block(const BlockCsr& a, Index node);
 
 }  // namespace taut

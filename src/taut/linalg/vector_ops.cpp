@@ -30,6 +30,11 @@ TAUT_MULTIVERSION void scale_add_kernel(double beta, const double* x, double* y,
   for (Index i = 0; i < n; ++i) y[i] = x[i] + beta * y[i];
 }
 
+TAUT_MULTIVERSION void multiply_each_kernel(const double* s, const double* r, double* z, Index n) {
+#pragma omp simd
+  for (Index i = 0; i < n; ++i) z[i] = s[i] * r[i];
+}
+
 }  // namespace
 
 double dot(std::span<const double> a, std::span<const double> b) {
@@ -49,6 +54,12 @@ void scale_add(double beta, std::span<const double> x, std::span<double> y) {
   assert(x.size() == y.size());
   parallel_for(static_cast<Index>(x.size()), entries_per_task,
                [&](Index begin, Index end) { scale_add_kernel(beta, &x[begin], &y[begin], end - begin); });
+}
+
+void multiply_each(std::span<const double> s, std::span<const double> r, std::span<double> z) {
+  assert(s.size() == r.size() && s.size() == z.size());
+  parallel_for(static_cast<Index>(r.size()), entries_per_task,
+               [&](Index begin, Index end) { multiply_each_kernel(&s[begin], &r[begin], &z[begin], end - begin); });
 }
 
 void residual_from_product(std::span<const double> b, std::span<double> r) {

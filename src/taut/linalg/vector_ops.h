@@ -1,5 +1,6 @@
 #pragma once
-// Vector operations of the Krylov methods, parallel, with sums in a fixed order (same bits for any thread count). Sizes must agree (asserted).
+// Vector operations of the Krylov methods, parallel, with sums in a fixed order (same bits for any thread count). Sizes must agree
+// (asserted).
 
 #include <span>
 
@@ -13,6 +14,8 @@ double norm(std::span<const double> a);
 void add_scaled(double alpha, std::span<const double> x, std::span<double> y);
 // y = x + beta y
 void scale_add(double beta, std::span<const double> x, std::span<double> y);
+// z = s r, entry by entry
+void multiply_each(std::span<const double> s, std::span<const double> r, std::span<double> z);
 // r = b - r   (turns a product A x into a residual)
 void residual_from_product(std::span<const double> b, std::span<double> r);
 // True when no entry is NaN or infinite.

@@ -42,7 +42,7 @@ SystemFiles files_of_dump(const fs::path& folder) {
     throw InputError({folder.string()},
                      "has no meta.json: it is not a dump, or one that was interrupted; write it with `taut dump`, or use --matrix A.mtx");
   const auto if_there = [&](const char* name) { return fs::exists(folder / name) ? folder / name : fs::path(); };
-  return {folder / "A.mtx", folder / "b.mtx", folder / "U.mtx", folder / "z.mtx", if_there("A_core.mtx"), if_there("guess.mtx"), true};
+  return {folder / "A.mtx", folder / "b.mtx", folder / "U.mtx", folder / "z.mtx", if_there("A_core.mtx"), if_there("guess.mtx"), if_there("x.mtx"), true};
 }
 
 StoredSystem::StoredSystem(const SystemFiles& files) : matrix_(to_system_matrix(read_matrix_market(files.matrix), files.matrix.string())) {
@@ -56,6 +56,7 @@ StoredSystem::StoredSystem(const SystemFiles& files) : matrix_(to_system_matrix(
   }
   read_constraints(files);
   if (!files.guess.empty()) guess_ = read_vector(files.guess, n);
+  if (!files.positions.empty()) positions_ = read_vector(files.positions, n);
   if (!files.core.empty()) read_core(files.core);
 }
 
@@ -109,6 +110,7 @@ LinearSystem StoredSystem::system() const {
   system.rhs = rhs_;
   system.guess = guess_;
   system.core = core_;
+  system.positions = positions_;
   if (constraints_) {
     system.constraints = &*constraints_;
     system.z = z_;

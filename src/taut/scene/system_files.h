@@ -7,6 +7,7 @@
 //   z            the prescribed part of the solution; not given: 0. Only with constraints
 //   core         a matrix made of some of A's entries, its whole diagonal (blocks) among them: what core_pcg factorises
 //   guess        where iterative solvers start; not given: 0
+//   positions    of the nodes, for multigrid's rotations; not given: it does without
 //
 // With constraints, or from a dump, a node is three consecutive rows and A gets 3x3 blocks; else each row is a node of its own.
 // Everything that does not fit is an InputError that names the file and, where there is one, the row and column (from 1).
@@ -19,7 +20,7 @@
 namespace taut {
 
 struct SystemFiles {
-  std::filesystem::path matrix, rhs, constraints, z, core, guess;  // empty: not given
+  std::filesystem::path matrix, rhs, constraints, z, core, guess, positions;  // empty: not given
   bool nodes_of_three = false;                                     // constraints imply it
 };
 
@@ -38,7 +39,7 @@ class StoredSystem {
   void read_core(const std::filesystem::path& path);
 
   BlockCsr matrix_;
-  std::vector<double> rhs_, z_, guess_;
+  std::vector<double> rhs_, z_, guess_, positions_;
   std::optional<ConstraintSet> constraints_;
   std::vector<std::uint8_t> core_;
 };

@@ -4,6 +4,7 @@
 
 #include "taut/base/parallel.h"
 #include "taut/base/timer.h"
+#include "taut/solve/preconditioner_choice.h"
 #include "taut/solve/reduced_pcg.h"
 
 namespace taut {
@@ -69,11 +70,7 @@ void CorePcg::run(const LinearSystem& system, std::span<double> x, SolveSummary&
   Timer timer;
   summary.remark = remark_;
   reduced_.update(system);
-  const BlockPattern& pattern = *system.matrix->pattern;
-  std::vector<std::uint8_t> mask(system.core.begin(), system.core.end());
-  if (mask.empty()) mask.assign(static_cast<std::size_t>(pattern.blocks()), 0);
-  assert(static_cast<Index>(mask.size()) == pattern.blocks());
-  const bool new_pattern = core_.update(*system.matrix, system.constraints, mask);
+  const bool new_pattern = core_.update(*system.matrix, system.constraints, core_mask(system));
   summary.reduce_ms = timer.lap();
 
   if (new_pattern || !analyzed_ || !options_.reuse_analysis) {

@@ -3,9 +3,10 @@
 #include "taut/base/timer.h"
 #include "taut/constraint/reduction.h"
 #include "taut/linalg/bicgstab.h"
+#include "taut/linalg/incomplete_lu.h"
 #include "taut/linalg/vector_ops.h"
+#include "taut/solve/filtered_matrix.h"
 #include "taut/solve/node_scale.h"
-#include "taut/solve/ppcg.h"
 #include "taut/solve/reduced_pcg.h"
 
 namespace taut {
@@ -48,17 +49,21 @@ void Eq10::run(const LinearSystem& system, std::span<double> x, SolveSummary& su
   const std::vector<double> scale = node_scale(*system.matrix);
   std::vector<double> rhs(system.rhs.begin(), system.rhs.end());
   blend(system.constraints, scale, system.z, rhs);
+  const bool blocks = kind_ == Eq10Preconditioner::block_diagonal;
+  if (!m_ || !options_.reuse_analysis)
+    m_ = blocks ? std::unique_ptr<Preconditioner>(std::make_unique<BlockDiagonalPreconditioner>()) : std::make_unique<BlockIncompleteLu>();
   // The diagonal blocks of the symmetric form: the best node-wise guess at the inverse of this one.
-  BlockCsr filtered;
-  filter_matrix(*system.matrix, system.constraints, filtered);
-  BlockDiagonalPreconditioner m;
-  summary.status = m.update(filtered);
+  blocks ? filter_matrix(*system.matrix, system.constraints, filtered_) : filter_rows(*system.matrix, system.constraints, filtered_);
+  summary.reduce_ms = timer.lap();
+  summary.status = m_->update(filtered_);
+  // ILU(0) does not mind a matrix that is not positive definite; what the diagonal shows of that is told all the same.
+  if (!blocks && summary.status.ok()) summary.status = BlockDiagonalPreconditioner().update(*system.matrix);
   initial_guess(system, x);
   summary.factor_ms = timer.lap();
-  summary.memory_bytes = static_cast<double>(m.bytes()) + 8.0 * sizeof(double) * x.size();
+  summary.memory_bytes = static_cast<double>(filtered_.bytes() + m_->bytes()) + 8.0 * sizeof(double) * x.size();
   if (!summary.status.ok()) return;
   const KrylovOptions options{options_.tolerance, iteration_limit(static_cast<Index>(x.size())), observer};
-  take_over(bicgstab(Eq10Operator(system, scale), m, rhs, x, options), summary);
+  take_over(bicgstab(Eq10Operator(system, scale), *m_, rhs, x, options), summary);
   summary.solve_ms = timer.lap();
 }
 

@@ -8,6 +8,7 @@
 //   constraints  S and U; null: none
 //   z            3N doubles, the prescribed part of x (its free part is ignored); may be empty without constraints
 //   guess        3N doubles, last step's x, or empty; iterative methods start at S guess + (I-S) z (Ascher & Boxerman 2003)
+//   positions    3N doubles, m, where the nodes are; or empty. Only multigrid uses them: for the rotations in its near-null space
 //   core         one byte per block of A, 1 for the blocks of the matrix core (paper Section 6); empty: only block-diagonal blocks
 // Units: A kg, b N s, x m/s when x is a velocity change; A kg, b kg m, x m when it is a displacement (BDF2).
 
@@ -27,6 +28,7 @@ struct LinearSystem {
   const ConstraintSet* constraints = nullptr;
   std::span<const double> z;
   std::span<const double> guess;
+  std::span<const double> positions;
   std::span<const std::uint8_t> core;
 };
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "taut/base/timer.h"
@@ -38,12 +39,14 @@ void Mpcg::run(const LinearSystem& system, std::span<double> x, SolveSummary& su
   const BlockCsr& a = *system.matrix;
   const std::size_t n = x.size();
   for (auto* v : {&r_, &s_, &c_, &q_}) v->resize(n);
-  summary.memory_bytes = 4.0 * sizeof(double) * n;
   const FreeProjection free(system.constraints);
-  // M_p of the whole matrix: no constraints are projected into it, S does that here.
-  ProjectedNodePreconditioner m(kind_, nullptr);
-  summary.status = m.update(a);
-  summary.memory_bytes += static_cast<double>(m.bytes());
+  const BlockCsr& source = source_.full(system, choice_.source);
+  summary.reduce_ms = timer.lap();
+  if (!m_ || !options_.reuse_analysis) m_ = choice_.make(options_, nullptr);
+  const Preconditioner& m = *m_;
+  summary.status = m_->update(source);
+  summary.remark = m.remark();
+  summary.memory_bytes = 4.0 * sizeof(double) * n + static_cast<double>(source_.bytes() + m.bytes());
   initial_guess(system, x);
   summary.factor_ms = timer.lap();
   if (!summary.status.ok()) return;
@@ -100,6 +103,9 @@ void Mpcg::run(const LinearSystem& system, std::span<double> x, SolveSummary& su
   summary.solve_ms = timer.lap();
   if (!std::isfinite(delta) || !std::isfinite(delta0)) {
     summary.status = {Outcome::not_finite, fmt::format("the residual is not finite after {} iterations", summary.iterations)};
+  } else if (delta < 0.0 || delta0 < 0.0) {
+    summary.status = {Outcome::not_positive_definite, fmt::format("rᵀ M⁻¹ r = {:.3g} < 0 after {} iterations: the preconditioner is not positive definite",
+                                                                  std::min(delta, delta0), summary.iterations)};
   } else if (!(curvature > 0.0)) {
     summary.status = {Outcome::not_positive_definite, fmt::format("a search direction of curvature {:.3g} after {} iterations", curvature, summary.iterations)};
   } else if (delta > limit) {

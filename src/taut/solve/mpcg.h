@@ -5,22 +5,25 @@
 //   r = S(b - A x)    c = S M_p⁻¹ r    δ = rᵀ c
 //   while δ > tol² δ0:   q = S A c    α = δ/(cᵀq)    x += α c    r -= α q    s = M_p⁻¹ r    δ' = rᵀ s    c = S(s + δ'/δ c)
 //
-// S is the identity but at the constrained nodes: it is applied there only, right behind the matrix product.
+// S is the identity but at the constrained nodes: it is applied there only, right behind the matrix product. Preconditioners that couple
+// nodes are made from S A S + d (I-S), see solve/preconditioner_choice.h.
 
-#include "taut/solve/node_preconditioner.h"
+#include "taut/solve/preconditioner_choice.h"
 #include "taut/solve/solver.h"
 
 namespace taut {
 
 class Mpcg : public ConstrainedSolver {
  public:
-  Mpcg(SolverOptions options, NodeDiagonal kind) : ConstrainedSolver(std::move(options)), kind_(kind) {}
+  Mpcg(SolverOptions options, const PreconditionerChoice& choice) : ConstrainedSolver(std::move(options)), choice_(choice) {}
 
  protected:
   void run(const LinearSystem& system, std::span<double> x, SolveSummary& summary) override;
 
  private:
-  NodeDiagonal kind_;
+  PreconditionerChoice choice_;
+  PreconditionerMatrix source_;
+  std::unique_ptr<Preconditioner> m_;
   std::vector<double> r_, s_, c_, q_;
 };
 

@@ -1,18 +1,9 @@
 #include "taut/solve/node_preconditioner.h"
 
 #include "taut/base/parallel.h"
-#include "taut/base/simd.h"
+#include "taut/linalg/vector_ops.h"
 
 namespace taut {
-
-namespace {
-
-TAUT_MULTIVERSION void scale_kernel(const double* s, const double* r, double* z, Index n) {
-#pragma omp simd
-  for (Index i = 0; i < n; ++i) z[i] = s[i] * r[i];
-}
-
-}  // namespace
 
 Status ProjectedNodePreconditioner::update(const BlockCsr& a) {
   const BlockPattern& p = *a.pattern;
@@ -34,7 +25,7 @@ Status ProjectedNodePreconditioner::update(const BlockCsr& a) {
       if (kind_ == NodeDiagonal::scalar) {
         for (Index r = 0; r < full; ++r) inverse[4 * r] = 1.0 / d[first + r];
       } else if (!invert_small(a.block(i, p.diagonal[i]), p.width(i), full, inverse)) {
-        return {Outcome::not_positive_definite, "the diagonal block of node " + std::to_string(i) + " is not positive definite"};
+        return bad_diagonal_block(a, i);
       }
       nodes_.push_back({dof, dim, static_cast<Index>(block_.size())});
       if (all_free) {
@@ -53,9 +44,7 @@ Status ProjectedNodePreconditioner::update(const BlockCsr& a) {
 }
 
 void ProjectedNodePreconditioner::apply(std::span<const double> r, std::span<double> z) const {
-  if (kind_ == NodeDiagonal::scalar)
-    parallel_for(static_cast<Index>(r.size()), 16384,
-                 [&](Index begin, Index end) { scale_kernel(&scalar_[begin], &r[begin], &z[begin], end - begin); });
+  if (kind_ == NodeDiagonal::scalar) multiply_each(scalar_, r, z);
   parallel_for(static_cast<Index>(nodes_.size()), 4096, [&](Index begin, Index end) {
     for (Index k = begin; k < end; ++k) {
       const Node& node = nodes_[k];

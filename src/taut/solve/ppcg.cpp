@@ -1,33 +1,13 @@
 #include "taut/solve/ppcg.h"
 
-#include "taut/base/parallel.h"
 #include "taut/base/timer.h"
 #include "taut/constraint/reduction.h"
 #include "taut/linalg/pcg.h"
 #include "taut/linalg/vector_ops.h"
-#include "taut/solve/node_scale.h"
+#include "taut/solve/filtered_matrix.h"
 #include "taut/solve/reduced_pcg.h"
 
 namespace taut {
-
-void filter_matrix(const BlockCsr& a, const ConstraintSet* constraints, BlockCsr& filtered) {
-  filtered = a;
-  if (!constraints) return;
-  const BlockPattern& p = *a.pattern;
-  const std::vector<double> scale = node_scale(a);
-  using RowMajor3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-  parallel_for(p.rows(), 256, [&](Index begin, Index end) {
-    for (Index i = begin; i < end; ++i)
-      for (Index k = p.row_start[i]; k < p.row_start[i + 1]; ++k) {
-        const Index j = p.column[k];
-        if (constraints->ndof(i) == 3 && constraints->ndof(j) == 3) continue;
-        Eigen::Map<RowMajor3, 0, Eigen::OuterStride<>> block(filtered.block(i, k), Eigen::OuterStride<>(p.width(i)));
-        Mat3 value = constraints->projection(i) * block * constraints->projection(j);
-        if (i == j) value += scale[i] * (Mat3::Identity() - constraints->projection(i));
-        block = value;
-      }
-  });
-}
 
 void Ppcg::run(const LinearSystem& system, std::span<double> x, SolveSummary& summary) {
   Timer timer;
@@ -41,11 +21,15 @@ void Ppcg::run(const LinearSystem& system, std::span<double> x, SolveSummary& su
     residual_from_product(system.rhs, rhs);
     project_free(system.constraints, rhs);
   }
+  // The diagonal blocks and the whole are read from the filtered matrix itself.
+  const BlockCsr& source = choice_.source == PreconditionerSource::core ? source_.full(system, choice_.source) : filtered_;
   summary.reduce_ms = timer.lap();
-  BlockDiagonalPreconditioner m;
-  summary.status = m.update(filtered_);
+  if (!m_ || !options_.reuse_analysis) m_ = choice_.make(options_, nullptr);
+  if (choice_.wants_near_null_space) m_->set_near_null_space(near_null_space(system, false));
+  summary.status = m_->update(source);
+  summary.remark = m_->remark();
   summary.factor_ms = timer.lap();
-  summary.memory_bytes = static_cast<double>(filtered_.bytes() + m.bytes()) + 6.0 * sizeof(double) * n;
+  summary.memory_bytes = static_cast<double>(filtered_.bytes() + source_.bytes() + m_->bytes()) + 6.0 * sizeof(double) * n;
   if (!summary.status.ok()) return initial_guess(system, x);
 
   std::vector<double> y(n, 0.0);
@@ -60,7 +44,7 @@ void Ppcg::run(const LinearSystem& system, std::span<double> x, SolveSummary& su
       assemble(part);
       observer(iteration, value, x);
     };
-  take_over(pcg(BlockCsrOperator(filtered_), m, rhs, y, options), summary);
+  take_over(pcg(BlockCsrOperator(filtered_), *m_, rhs, y, options), summary);
   assemble(y);
   summary.solve_ms = timer.lap();
 }

@@ -1,12 +1,16 @@
 #pragma once
 // Solvers of the constrained linear system, by name ("METHOD" or "METHOD:VARIANT"):
 //
-//   mpcg[:diagonal|:block_diagonal]      modified PCG on (A, S, z): Baraff & Witkin 1998, as corrected by Ascher & Boxerman 2003   (paper Section 2)
-//   upcg[:diagonal|:block_diagonal]      plain PCG on Ã, M_p⁻¹ restricted to Uᵀ M_p⁻¹ U: step by step the same as mpcg          (Section 3)
-//   upcg:reduced_diagonal                plain PCG on Ã with diag(Ã), which depends on the choice of U
-//   upcg:projected_block_diagonal        plain PCG on Ã with its own diagonal blocks (Boxerman & Ascher 2004)
-//   ppcg                                 pre-filtered PCG on S A S + d (I-S): size and pattern of A kept (Tamstorf et al. 2015)
-//   eq10                                 BiCGSTAB on S A + d (I-S), the paper's Eq. 10, which MATH.md shows to be equivalent after all
+//   mpcg[:PRECONDITIONER]                modified PCG on (A, S, z): Baraff & Witkin 1998, as corrected by Ascher & Boxerman 2003   (paper Section 2)
+//   upcg[:PRECONDITIONER]                plain PCG on the reduced Ã                                                             (Section 3)
+//   ppcg[:PRECONDITIONER]                pre-filtered PCG on S A S + d (I-S): size and pattern of A kept (Tamstorf et al. 2015)
+//      diagonal, block_diagonal          of A, restricted to the free directions: mpcg and upcg then agree step by step
+//      projected_block_diagonal          the diagonal blocks of Ã (Boxerman & Ascher 2004); ppcg calls its own block_diagonal
+//      reduced_diagonal                  upcg: diag(Ã), which depends on the choice of U
+//      ic0, ic0_core                     incomplete Cholesky on node blocks, of Ã or of the matrix core (linalg/incomplete_cholesky.h)
+//      ssor                              symmetric Gauss-Seidel, or SolverOptions::ssor_omega (linalg/ssor.h)
+//      amg                               upcg, ppcg: smoothed aggregation with the rigid motions (linalg/smoothed_aggregation.h)
+//   eq10[:block_diagonal|:ilu0]          BiCGSTAB on S A + d (I-S), the paper's Eq. 10, which MATH.md shows to be equivalent after all
 //   cholmod, pardiso, eigen_ldlt         direct: sparse Cholesky of Ã                                                              (Section 4)
 //   pardiso_cgs                          PARDISO's own CG on the factor of an earlier step, its "Pardiso(2)"; library taut_pardiso       (Table 2)
 //   core_pcg[:cholmod|:eigen|:pardiso]   PCG on Ã, preconditioned by the factorised matrix core                                    (Section 6)

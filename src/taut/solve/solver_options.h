@@ -16,6 +16,8 @@ struct SolverOptions {
   std::string reordering = "vectors";
   // Direct factorisations: keep the ordering and symbolic work while the pattern is the same. The paper (and the benches) analyse in every step.
   bool reuse_analysis = true;
+  // SSOR's relaxation factor, above 0 and below 2; 1 is symmetric Gauss-Seidel.
+  double ssor_omega = 1.0;
   bool operator==(const SolverOptions&) const = default;
 };
 

@@ -5,31 +5,22 @@
 
 namespace taut {
 
-namespace {
-
-std::unique_ptr<Preconditioner> make_diagonal(UpcgDiagonal kind, const ConstraintSet* constraints) {
-  switch (kind) {
-    case UpcgDiagonal::scalar: return std::make_unique<ProjectedNodePreconditioner>(NodeDiagonal::scalar, constraints);
-    case UpcgDiagonal::block: return std::make_unique<ProjectedNodePreconditioner>(NodeDiagonal::block, constraints);
-    case UpcgDiagonal::reduced_scalar: return std::make_unique<DiagonalPreconditioner>();
-    case UpcgDiagonal::reduced_block: break;
-  }
-  return std::make_unique<BlockDiagonalPreconditioner>();
-}
-
-}  // namespace
-
 void Upcg::run(const LinearSystem& system, std::span<double> x, SolveSummary& summary) {
   Timer timer;
   reduced_.update(system);
+  const BlockCsr& source = source_.reduced(system, choice_.source, reduced_.matrix());
   summary.reduce_ms = timer.lap();
-  const auto m = make_diagonal(kind_, system.constraints);
-  const bool from_full = kind_ == UpcgDiagonal::scalar || kind_ == UpcgDiagonal::block;
-  summary.status = m->update(from_full ? *system.matrix : reduced_.matrix());
+  // Those made from the constraints know nothing that could be kept.
+  if (!m_ || !options_.reuse_analysis || choice_.source == PreconditionerSource::unconstrained)
+    m_ = choice_.make(options_, system.constraints);
+  if (choice_.wants_near_null_space) m_->set_near_null_space(near_null_space(system, true));
+  summary.status = m_->update(source);
+  summary.remark = m_->remark();
   summary.factor_ms = timer.lap();
-  summary.memory_bytes = static_cast<double>(reduced_.matrix().bytes() + m->bytes()) + 6.0 * sizeof(double) * reduced_.rhs().size();
+  summary.memory_bytes =
+      static_cast<double>(reduced_.matrix().bytes() + source_.bytes() + m_->bytes()) + 6.0 * sizeof(double) * reduced_.rhs().size();
   if (!summary.status.ok()) return initial_guess(system, x);
-  reduced_pcg(system, reduced_, *m, options_.tolerance, iteration_limit(reduced_.matrix().dofs()), observer, x, summary);
+  reduced_pcg(system, reduced_, *m_, options_.tolerance, iteration_limit(reduced_.matrix().dofs()), observer, x, summary);
   summary.solve_ms = timer.lap();
 }
 

@@ -132,6 +132,7 @@ LinearSystem Stepper::system() const {
   system.z = flat(z_);
   system.guess = flat(current_guess_);
   system.core = core_;
+  if (state_) system.positions = flat(state_->x);
   return system;
 }
 

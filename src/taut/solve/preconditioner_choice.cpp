@@ -1,0 +1,94 @@
+#include "taut/solve/preconditioner_choice.h"
+
+#include <cassert>
+
+#include "taut/linalg/incomplete_cholesky.h"
+#include "taut/linalg/smoothed_aggregation.h"
+#include "taut/linalg/ssor.h"
+#include "taut/solve/filtered_matrix.h"
+#include "taut/solve/node_preconditioner.h"
+
+namespace taut {
+
+namespace {
+
+template <NodeDiagonal kind>
+std::unique_ptr<Preconditioner> make_projected(const SolverOptions&, const ConstraintSet* constraints) {
+  return std::make_unique<ProjectedNodePreconditioner>(kind, constraints);
+}
+
+template <class Made>
+std::unique_ptr<Preconditioner> make_plain(const SolverOptions&, const ConstraintSet*) {
+  return std::make_unique<Made>();
+}
+
+std::unique_ptr<Preconditioner> make_ssor(const SolverOptions& options, const ConstraintSet*) {
+  return std::make_unique<BlockSsor>(options.ssor_omega);
+}
+
+}  // namespace
+
+namespace preconditioner {
+using enum PreconditionerSource;
+const PreconditionerChoice diagonal{unconstrained, make_projected<NodeDiagonal::scalar>};
+const PreconditionerChoice block_diagonal{unconstrained, make_projected<NodeDiagonal::block>};
+const PreconditionerChoice reduced_diagonal{blocks, make_plain<DiagonalPreconditioner>};
+const PreconditionerChoice projected_block_diagonal{blocks, make_plain<BlockDiagonalPreconditioner>};
+const PreconditionerChoice ic0{constrained, make_plain<BlockIncompleteCholesky>};
+const PreconditionerChoice ic0_core{core, make_plain<BlockIncompleteCholesky>};
+const PreconditionerChoice ssor{constrained, make_ssor};
+const PreconditionerChoice amg{constrained, make_plain<SmoothedAggregation>, true};
+}  // namespace preconditioner
+
+std::vector<std::uint8_t> core_mask(const LinearSystem& system) {
+  std::vector<std::uint8_t> mask(system.core.begin(), system.core.end());
+  if (mask.empty()) mask.assign(static_cast<std::size_t>(system.matrix->pattern->blocks()), 0);
+  assert(static_cast<Index>(mask.size()) == system.matrix->pattern->blocks());
+  return mask;
+}
+
+NearNullSpace near_null_space(const LinearSystem& system, bool reduced) {
+  const BlockPattern& p = *system.matrix->pattern;
+  if (p.uniform_dim != 3) return {};
+  NearNullSpace space = rigid_motions(p.rows(), system.positions);
+  if (!system.constraints) return space;
+  const std::size_t modes = static_cast<std::size_t>(space.modes), n = static_cast<std::size_t>(p.dofs());
+  const std::size_t rows = reduced ? static_cast<std::size_t>(system.constraints->free_dofs()) : n;
+  NearNullSpace result{space.modes, std::vector<double>(rows * modes)};
+  std::vector<double> full(n), part(rows);
+  for (std::size_t m = 0; m < modes; ++m) {
+    for (std::size_t r = 0; r < n; ++r) full[r] = space.values[r * modes + m];
+    reduced ? restrict_to_free(system.constraints, full, part) : project_free(system.constraints, full);
+    const std::vector<double>& mode = reduced ? part : full;
+    for (std::size_t r = 0; r < rows; ++r) result.values[r * modes + m] = mode[r];
+  }
+  return result;
+}
+
+const BlockCsr& PreconditionerMatrix::reduced(const LinearSystem& system, PreconditionerSource source, const BlockCsr& reduced_matrix) {
+  bytes_ = 0;
+  if (source == PreconditionerSource::unconstrained) return *system.matrix;
+  if (source != PreconditionerSource::core) return reduced_matrix;  // node-wise ones read the diagonal blocks only
+  part_.update(*system.matrix, system.constraints, core_mask(system));
+  bytes_ = part_.matrix().bytes();
+  return part_.matrix();
+}
+
+const BlockCsr& PreconditionerMatrix::full(const LinearSystem& system, PreconditionerSource source) {
+  bytes_ = 0;
+  const BlockCsr* matrix = system.matrix;
+  if (source == PreconditionerSource::unconstrained) return *matrix;
+  if (source != PreconditionerSource::constrained) {
+    LinearSystem no_core = system;
+    no_core.core = {};
+    part_.update(*matrix, nullptr, core_mask(source == PreconditionerSource::core ? system : no_core));
+    matrix = &part_.matrix();
+    bytes_ += matrix->bytes();
+  }
+  if (!system.constraints) return *matrix;
+  filter_matrix(*matrix, system.constraints, filtered_);
+  bytes_ += filtered_.bytes();
+  return filtered_;
+}
+
+}  // namespace taut
