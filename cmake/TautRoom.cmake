@@ -4,7 +4,7 @@
 # libtaut is made of all rooms; a test program of a room links only that room and those below it.
 function(taut_room name)
   cmake_parse_arguments(arg "" "" "ROOMS;LIBRARIES;PRIVATE_LIBRARIES;PRIVATE_HEADERS" ${ARGN})
-  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cpp)
+  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cpp ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*/*.cpp)
   set(all_rooms ${name})
   set(all_libraries ${arg_LIBRARIES} ${arg_PRIVATE_LIBRARIES})
   foreach(room IN LISTS arg_ROOMS)

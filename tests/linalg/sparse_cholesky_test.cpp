@@ -1,4 +1,4 @@
-// Every factorisation that is registered in this program: the test program of linalg has Eigen's, that of taut_cholmod has CHOLMOD's too.
+// Every factorisation that is registered in this program: the test program of linalg has Taut's own and Eigen's, that of taut_cholmod has CHOLMOD's too.
 
 #include "taut/linalg/sparse_cholesky.h"
 
@@ -26,12 +26,15 @@ BlockCsr mixed_spd(Random& random, Index nodes) {
 // 3x3 blocks with much fill-in, so that CHOLMOD takes its supernodal way.
 BlockCsr supernodal_spd(Random& random) { return random_spd(random, make_pattern(random_graph(random, 200, 6, 150), 3), 1e-2); }
 
+// Of a solution, relative. Single precision: the matrices here have condition numbers of some hundreds.
+double tolerance(const SparseCholesky& cholesky) { return cholesky.name() == "block_single" ? 3e-5 : 1e-11; }
+
 void expect_solves(SparseCholesky& cholesky, const BlockCsr& a, Random& random) {
   const std::vector<double> b = random.vector(a.dofs());
   std::vector<double> x(b.size());
   ASSERT_TRUE(cholesky.solve(b, x).ok());
   const Eigen::VectorXd expected = dense(a).llt().solve(as_eigen(b));
-  EXPECT_LT(relative_difference(x, expected), 1e-11);
+  EXPECT_LT(relative_difference(x, expected), tolerance(cholesky));
   std::vector<double> in_place = b;
   ASSERT_TRUE(cholesky.solve(in_place, in_place).ok());
   EXPECT_EQ(in_place, x);
@@ -79,7 +82,7 @@ TEST_P(Cholesky, PermutedSolveIsThatOfThePermutedMatrix) {
     const std::vector<double> b = random.vector(a.dofs());
     std::vector<double> x(b.size());
     ASSERT_TRUE(cholesky_->solve_permuted(b, x).ok());
-    EXPECT_LT(relative_difference(x, permuted.llt().solve(as_eigen(b))), 1e-11);
+    EXPECT_LT(relative_difference(x, permuted.llt().solve(as_eigen(b))), tolerance(*cholesky_));
   }
 }
 
@@ -99,7 +102,7 @@ TEST_P(Cholesky, StatisticsCountTheFactor) {
   // With or without the diagonal (LLᵀ or LDLᵀ), and supernodes may store some zeros.
   EXPECT_GE(statistics.nonzeros, nonzeros - a.dofs());
   EXPECT_LE(statistics.nonzeros, 1.5 * nonzeros);
-  EXPECT_GE(statistics.bytes, 8.0 * statistics.nonzeros);
+  EXPECT_GE(statistics.bytes, (GetParam() == "block_single" ? 4.0 : 8.0) * statistics.nonzeros);
   EXPECT_FALSE(statistics.ordering.empty());
 }
 

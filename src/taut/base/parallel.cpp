@@ -5,6 +5,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/partitioner.h>
 #include <tbb/task_arena.h>
+#include <tbb/task_group.h>
 
 #include <memory>
 #include <stdexcept>
@@ -58,15 +59,43 @@ void detail::run_parallel(Index n, Index grain, const std::function<void(Index, 
   char start_token = 0, end_token = 0;
   TAUT_TSAN_RELEASE(&start_token);
   w.arena->execute([&] {
-    // A static split: the same ranges go to the same caches loop after loop.
-    tbb::parallel_for(
-        tbb::blocked_range<Index>(0, n, grain),
-        [&](const tbb::blocked_range<Index>& range) {
-          TAUT_TSAN_ACQUIRE(&start_token);
-          body(range.begin(), range.end());
-          TAUT_TSAN_RELEASE(&end_token);
-        },
-        tbb::static_partitioner());
+    // Isolated: a thread that waits for the end of a loop inside a task must not begin another, perhaps much longer, task meanwhile.
+    tbb::this_task_arena::isolate([&] {
+      // A static split: the same ranges go to the same caches loop after loop.
+      tbb::parallel_for(
+          tbb::blocked_range<Index>(0, n, grain),
+          [&](const tbb::blocked_range<Index>& range) {
+            TAUT_TSAN_ACQUIRE(&start_token);
+            body(range.begin(), range.end());
+            TAUT_TSAN_RELEASE(&end_token);
+          },
+          tbb::static_partitioner());
+    });
+  });
+  TAUT_TSAN_ACQUIRE(&end_token);
+}
+
+void detail::run_tasks(std::span<const Index> first, const std::function<void(Index, Spawner&)>& body) {
+  char start_token = 0, end_token = 0;
+  struct GroupSpawner final : Spawner {
+    const std::function<void(Index, Spawner&)>& body;
+    char *start_token, *end_token;
+    tbb::task_group group;
+
+    GroupSpawner(const std::function<void(Index, Spawner&)>& b, char* start, char* end) : body(b), start_token(start), end_token(end) {}
+    void operator()(Index task) override {
+      TAUT_TSAN_RELEASE(start_token);
+      group.run([this, task] {
+        TAUT_TSAN_ACQUIRE(start_token);
+        body(task, *this);
+        TAUT_TSAN_RELEASE(end_token);
+      });
+    }
+  };
+  workers().arena->execute([&] {
+    GroupSpawner spawn(body, &start_token, &end_token);
+    for (const Index task : first) spawn(task);
+    spawn.group.wait();
   });
   TAUT_TSAN_ACQUIRE(&end_token);
 }

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "taut/base/types.h"
@@ -23,7 +24,18 @@ int thread_count();
 
 namespace detail {
 void run_parallel(Index n, Index grain, const std::function<void(Index, Index)>& body);
-}
+
+// Tasks that make tasks, for TaskTree (base/task_tree.h): body(t, spawn) for every t in `first` and every t that a body hands to spawn(t).
+// Returns when all have run.
+class Spawner {
+ public:
+  virtual void operator()(Index task) = 0;
+
+ protected:
+  ~Spawner() = default;
+};
+void run_tasks(std::span<const Index> first, const std::function<void(Index, Spawner&)>& body);
+}  // namespace detail
 
 template <class Body>
 void parallel_for(Index n, Index grain, Body&& body) {

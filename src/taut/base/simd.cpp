@@ -10,4 +10,14 @@ const char* instruction_set() {
   return "default";
 }
 
+int x86_64_level() {
+#if defined(__x86_64__) && defined(__GNUC__)
+  const bool v3 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2");
+  const bool v4 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw") &&
+                  __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512cd");
+  if (v3) return v4 ? 4 : 3;
+#endif
+  return 0;
+}
+
 }  // namespace taut

@@ -16,4 +16,8 @@ namespace taut {
 // "x86-64-v4", "x86-64-v3" or "default": what TAUT_MULTIVERSION functions resolve to on this machine.
 const char* instruction_set();
 
+// What the processor can run: 4 (AVX-512), 3 (AVX2 and FMA), or 0 for less and for other architectures. For kernels that are compiled once per
+// instruction set in sources of their own and chosen by a table.
+int x86_64_level();
+
 }  // namespace taut

@@ -3,6 +3,7 @@
 #include <map>
 
 #include "taut/base/parallel.h"
+#include "taut/linalg/block_cholesky.h"
 #include "taut/linalg/eigen_cholesky.h"
 
 namespace taut {
@@ -10,7 +11,11 @@ namespace taut {
 namespace {
 
 std::map<std::string, CholeskyFactory>& factories() {
-  static std::map<std::string, CholeskyFactory> known{{"eigen", [] { return std::make_unique<EigenCholesky>(); }}};
+  static std::map<std::string, CholeskyFactory> known{
+      {"eigen", [] { return std::make_unique<EigenCholesky>(); }},
+      {"block", [] { return std::make_unique<BlockCholesky>(CholeskyPrecision::double_precision); }},
+      {"block_single", [] { return std::make_unique<BlockCholesky>(CholeskyPrecision::single_precision); }},
+  };
   return known;
 }
 

@@ -7,7 +7,7 @@
 //   permutation()   perm[k] = which unknown of A is k-th in the factor; empty when the backend does not tell
 //   solve_permuted  the same solve for vectors already in the factor's order
 //
-// Implementations: Eigen's SimplicialLDLT (here), CHOLMOD (library taut_cholmod, GPL in its supernodal part). They are found by name, so that
+// Implementations: Taut's own (linalg/block_cholesky.h), Eigen's SimplicialLDLT (here), CHOLMOD (library taut_cholmod, GPL in its supernodal part). They are found by name, so that
 // libtaut links no GPL code: a program that wants CHOLMOD calls taut::register_cholmod() (taut_cholmod/cholmod.h).
 // One object is used by one thread at a time.
 
@@ -46,7 +46,8 @@ using CholeskyFactory = std::function<std::unique_ptr<SparseCholesky>()>;
 
 // Makes a backend known under `name`; a later one of the same name replaces the earlier. Not while solvers are being made.
 void register_cholesky(const std::string& name, CholeskyFactory factory);
-// The backend's object, or null when it is not registered. "eigen" is always there.
+// The backend's object, or null when it is not registered. "eigen", "block" and "block_single" (Taut's own
+// in double and single precision) are always there.
 std::unique_ptr<SparseCholesky> make_cholesky(const std::string& name);
 std::vector<std::string> cholesky_names();
 

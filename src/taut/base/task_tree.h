@@ -1,0 +1,41 @@
+#pragma once
+// Tasks that form a forest, run in parallel:
+//
+//   run_upwards(tree, f)     f(t) once for every task, after all its children
+//   run_downwards(tree, f)   f(t) once for every task, after its parent
+//
+// Tasks are numbered so that parents come after their children. f is called from several threads; what it computes must not depend on which
+// tasks ran before, but for those above. A task may itself run parallel loops. With one thread the tasks run in the order of their numbers
+// (downwards: reversed). One run of a tree at a time: it keeps the counters of open children, so that a run allocates nothing itself.
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "taut/base/types.h"
+
+namespace taut {
+
+class TaskTree {
+ public:
+  TaskTree() = default;
+  // parent[t] > t, or -1 for a root. Asserted.
+  explicit TaskTree(std::vector<Index> parent);
+  Index size() const { return static_cast<Index>(parent_.size()); }
+  Index parent(Index t) const { return parent_[t]; }
+  std::span<const Index> children(Index t) const { return {child_.data() + child_start_[t], child_.data() + child_start_[t + 1]}; }
+  std::span<const Index> leaves() const { return leaves_; }
+  std::span<const Index> roots() const { return roots_; }
+
+ private:
+  friend void run_upwards(TaskTree&, const std::function<void(Index)>&);
+  std::vector<Index> parent_, child_start_, child_, leaves_, roots_;
+  std::unique_ptr<std::atomic<Index>[]> open_children_;
+};
+
+void run_upwards(TaskTree& tree, const std::function<void(Index)>& body);
+void run_downwards(const TaskTree& tree, const std::function<void(Index)>& body);
+
+}  // namespace taut

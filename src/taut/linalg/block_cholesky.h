@@ -1,0 +1,64 @@
+#pragma once
+// Taut's own sparse Cholesky factorisation P A Pᵀ = L Lᵀ for matrices made of small blocks, one per node (cloth: 3x3; scalar matrices:
+// 1x1).
+//
+//   analyze     nested dissection of the node graph (linalg/node_ordering.h), elimination tree, supernodes, all memory planned: once per
+//   topology factorize   multifrontal, dense SIMD kernels chosen for the machine, parallel over the tree and inside its upper fronts solve
+//   forward and backward, double vectors in and out whatever the precision of L; x = A⁻¹ b up to that precision
+//
+// Constraints come and go, the analysis stays: after analyze(pattern), factorize(A) takes any matrix whose nodes are those of the pattern
+// with the same or fewer unknowns each (3, 2, 1 or 0) and whose blocks are among the pattern's; blocks may be missing. Missing unknowns are
+// eliminated as the identity, so the cost is that of the full pattern. b and x are numbered as the unknowns of that A.
+//
+// Precision: `single` halves the memory that the solves read and doubles the speed of the arithmetic; meant for preconditioners.
+// `automatic` begins in single precision and factorises again in double precision when a pivot fails, which statistics count.
+//
+// Outcomes: not_positive_definite and not_finite name the first unknown, in the order of elimination, whose pivot is not a positive finite
+// number, and its node. A pattern that does not fit the analysis: breakdown.
+//
+// Same bits for any number of threads. After the first of each, factorize and solve allocate nothing as long as pattern and number of
+// threads stay.
+//
+// Sources: Liu 1992, SIAM Review 34 (multifrontal method); Davis 2006, Direct Methods for Sparse Linear Systems (trees, counts);
+// Karypis & Kumar 1998 (METIS).
+
+#include "taut/linalg/sparse_cholesky.h"
+
+namespace taut {
+
+enum class CholeskyPrecision { double_precision, single_precision, automatic };
+
+struct BlockCholeskyStatistics {
+  Index supernodes = 0;
+  double factor_entries = 0.0;  // of L without padding and without what amalgamation adds
+  double flops = 0.0;           // multiplications and additions for those entries
+  double padded_flops = 0.0;    // what is really done
+  double panel_bytes = 0.0;     // of L as stored: what each of the two solves reads
+  double total_bytes = 0.0;     // with updates, vectors, index lists
+  bool single_precision = false;
+  int fallbacks = 0;            // factorisations repeated in double precision
+  std::string instruction_set;  // of the kernels
+};
+
+class BlockCholesky : public SparseCholesky {
+ public:
+  explicit BlockCholesky(CholeskyPrecision precision = CholeskyPrecision::double_precision);
+  ~BlockCholesky() override;
+
+  std::string name() const override;  // "block", "block_single" or "block_automatic"
+  Status analyze(const BlockCsr& a) override;
+  Status analyze(const BlockPattern& pattern);
+  Status factorize(const BlockCsr& a) override;
+  Status solve(std::span<const double> b, std::span<double> x) override;
+  // Of the matrix analysed, or of the matrix last factorised.
+  std::span<const Index> permutation() const override;
+  Status solve_permuted(std::span<const double> b, std::span<double> x) override;
+  FactorStatistics statistics() const override;
+  BlockCholeskyStatistics block_statistics() const;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace taut

@@ -1,0 +1,71 @@
+#pragma once
+// Where everything of a factorisation lies in memory, planned once per analysis: panels, updates, vectors, and how children enter their
+// parents.
+//
+// Every supernode is a front (front_kernels.h). Its rows are its pivots, padded, then the unknowns of its row nodes, in the order of
+// elimination.
+//
+//   panels   one after the other in the order of elimination: the factor L, which the solves stream through
+//   updates  in an arena: an update lives from its front's elimination until its parent has taken it in; later ones reuse the place. Tasks
+//   that may run
+//            at the same time get places that do not overlap.
+//   vector   slabs() R entries a front: what the solves work on
+//
+// Tasks: whole subtrees whose work is a small share of all, each eliminated by one thread in order; every front above them is a task of its
+// own, whose products are shared between threads. The shares depend on `threads`, so the plan does; the numbers that come out do not.
+
+#include <span>
+#include <vector>
+
+#include "taut/base/task_tree.h"
+#include "taut/linalg/block_cholesky/analyzed_graph.h"
+#include "taut/linalg/block_cholesky/front_kernels.h"
+#include "taut/linalg/block_cholesky/supernodes.h"
+
+namespace taut {
+
+struct Front {
+  FrontShape shape;
+  Index parent = -1;
+  Index pivots = 0;                      // unknowns, without padding
+  Index first_node = 0, last_node = 0;   // places of its pivot nodes in the order
+  Index child_begin = 0, child_end = 0;  // into FactorLayout::child
+  Index piece_begin = 0, piece_end = 0;  // into FactorLayout::piece: how its update enters its parent ...
+  Index piece_split = 0;                 // ... those before this one are pivots there
+  Offset panel = 0, update = 0, vector = 0;
+};
+
+// A block of A below or on the diagonal, in the column of a pivot node: node `node` of A is from row `row` on in the front.
+struct BlockPlace {
+  Index node = 0, row = 0;
+};
+
+// Fronts begin ... end-1; `shared`: a single one, large enough for several threads.
+struct FrontTask {
+  Index begin = 0, end = 0;
+  bool shared = false;
+};
+
+struct FactorLayout {
+  std::vector<Front> front;
+  std::vector<Index> child;  // ascending for each front: the order in which updates are added
+  std::vector<RowPiece> piece;
+  std::vector<Index> node;         // per place in the order: the node of A
+  std::vector<Index> node_weight;  // per place in the order: its unknowns
+  std::vector<Index> node_column;  // per place in the order: first column of the node in its front
+  std::vector<Index> block_start;  // per place in the order, into block; nodes + 1
+  std::vector<BlockPlace> block;   // per place ascending in `node`
+  std::vector<FrontTask> task;
+  TaskTree task_tree;
+  Offset panel_size = 0, update_size = 0, vector_size = 0;  // elements
+  double flops = 0.0;                                       // of the padded fronts
+
+  Offset bytes() const;
+};
+
+FactorLayout make_factor_layout(const SupernodeTree& tree, const AnalyzedGraph& analyzed, Index slab_rows, Index column_group);
+
+// Tasks and places of updates for a number of threads.
+void plan_tasks(FactorLayout& layout, int threads);
+
+}  // namespace taut

@@ -1,0 +1,97 @@
+#pragma once
+// The dense arithmetic of the block Cholesky factorisation: what is done inside one front, compiled once per instruction set.
+//
+// A front is the lower triangle of a dense symmetric matrix of `rows` rows, whose first `columns` columns (pivots) are eliminated:
+//
+//        columns                        L11 L11ᵀ = F11          Cholesky of the pivots
+//      | F11      |                     L21      = F21 L11⁻ᵀ    triangular solve
+//      | F21  F22 |                     U        = -L21 L21ᵀ    update, to be added to the parent's front
+//
+// Both parts are stored as slabs of R = slab_rows rows, columns one after the other inside a slab, slabs one after the other:
+//
+//   panel (F11, F21, then L11, L21)   slab b holds the columns 0 ... min(columns, R(b+1))-1:       element (i, j) at panel_offset(i/R) + j
+//   R + i%R update (U)                        slab b >= columns/R holds the columns columns ... R(b+1)-1:  at update_offset(i/R) +
+//   (j-columns) R + i%R
+//
+// A slab's column is a few SIMD registers; a row of a slab, read with stride R, is what the other operand of a product needs. So slabs
+// serve as both operands of every product as they are. The diagonal of L11 is stored inverted. Above the diagonal, a panel's slabs are 0
+// and an update's are undefined.
+//
+// R and column_group (the register block is R x column_group) differ by instruction set and precision: the layout is made for the kernels
+// that run. `columns` is a multiple of column_group; column_group divides R. No kernel allocates; all may be called from several threads on
+// different data.
+
+#include <cstdint>
+
+namespace taut {
+
+struct FrontShape {
+  std::int32_t columns = 0;  // pivots, padded to a multiple of column_group
+  std::int32_t rows = 0;     // with the pivots
+  std::int32_t slab_rows = 0;
+
+  // These functions must never exist out of line: one compiled for a newer instruction set could be linked into the plain build.
+  [[gnu::always_inline]] std::int32_t slabs() const { return (rows + slab_rows - 1) / slab_rows; }
+  [[gnu::always_inline]] std::int32_t first_update_slab() const { return columns / slab_rows; }
+  [[gnu::always_inline]] std::int32_t panel_width(std::int32_t slab) const {
+    const std::int32_t end = slab_rows * (slab + 1);
+    return end < columns ? end : columns;
+  }
+  [[gnu::always_inline]] std::int64_t panel_offset(std::int32_t slab) const {
+    const std::int64_t r = slab_rows, full = slab < first_update_slab() ? slab : first_update_slab();
+    return r * (r * (full * (full + 1) / 2) + (slab - full) * columns);
+  }
+  [[gnu::always_inline]] std::int64_t update_offset(std::int32_t slab) const {
+    const std::int64_t r = slab_rows, first = first_update_slab(), b = slab;
+    return r * (r * ((b * (b + 1) - first * (first + 1)) / 2) - (b - first) * columns);
+  }
+  [[gnu::always_inline]] std::int64_t panel_size() const { return panel_offset(slabs()); }
+  [[gnu::always_inline]] std::int64_t update_size() const { return rows > columns ? update_offset(slabs()) : 0; }
+  [[gnu::always_inline]] std::int32_t update_tiles() const {
+    const std::int32_t n = slabs() - first_update_slab();
+    return rows > columns ? n * (n + 1) / 2 : 0;
+  }
+};
+
+// `count` rows from `from` on of a child's front are the rows from `to` on of its parent's; they lie within one slab of each, and within
+// either the parent's pivots or its other rows.
+struct RowPiece {
+  std::int32_t from = 0, to = 0, count = 0;
+};
+
+struct BadPivot {
+  std::int32_t column = -1;  // of the front, -1: all pivots are positive and finite
+  double value = 0.0;        // the pivot before its square root is taken
+};
+
+template <class T>
+struct FrontKernels {
+  const char* instruction_set;
+  std::int32_t slab_rows;
+  std::int32_t column_group;
+  std::int32_t panel_columns;  // columns eliminated before the next ones are touched; a multiple of slab_rows
+
+  // Eliminates the pivots begin ... end-1 (at most panel_columns, begin a multiple of it) in the slabs slab_begin ... slab_end-1. All
+  // earlier pivots are eliminated there, and the slabs that hold the rows begin ... end-1 come first. Stops at a bad pivot.
+  BadPivot (*eliminate)(const FrontShape& shape, T* panel, std::int32_t slab_begin, std::int32_t slab_end, std::int32_t begin,
+                        std::int32_t end);
+
+  // U = -L21 L21ᵀ for the tiles begin ... end-1 of update_tiles(): R x R, slab after slab, from the left to the diagonal. Overwrites.
+  void (*form_update)(const FrontShape& shape, const T* panel, T* update, std::int32_t begin, std::int32_t end);
+
+  // Adds a child's update to a front: the rows of pieces[k], k = row_begin ... row_end-1, in the columns of pieces[q], q = column_begin ...
+  // column_end-1, q <= k. `target` is the parent's panel if the columns are pivots there, else the parent's update. Up to R elements before
+  // and after the child's update are read (not used).
+  void (*add_update)(const FrontShape& child, const T* update, const RowPiece* pieces, std::int32_t column_begin, std::int32_t column_end,
+                     std::int32_t row_begin, std::int32_t row_end, const FrontShape& parent, T* target, bool target_is_panel);
+
+  // x: slabs() * R entries. forward: x1 = L11⁻¹ x1, x2 -= L21 x1.  backward: x1 = L11⁻ᵀ (x1 - L21ᵀ x2); x beyond `rows` must be 0.
+  void (*forward)(const FrontShape& shape, const T* panel, T* x);
+  void (*backward)(const FrontShape& shape, const T* panel, T* x);
+};
+
+// The kernels for this machine (x86-64-v4, x86-64-v3 or the plain build), chosen once.
+template <class T>
+const FrontKernels<T>& front_kernels();
+
+}  // namespace taut

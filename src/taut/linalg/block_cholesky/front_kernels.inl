@@ -1,0 +1,453 @@
+// The kernels of front_kernels.h. Included by one source per instruction set, which names its namespace in TAUT_KERNELS; the register block
+// follows from what the compiler may use. Nothing here may call an inline function of a library: see FrontShape.
+
+#include "taut/linalg/block_cholesky/front_kernels.h"
+
+namespace taut::TAUT_KERNELS {
+namespace {
+
+using Int = std::int32_t;
+
+// The registers of one block: R/lanes x G accumulators, R/lanes for a column of the first operand, one for the broadcast second operand.
+#if defined(__AVX512F__)
+constexpr Int register_bytes = 64, block_vectors = 2, group = 8;  // 16 of 32 registers
+#elif defined(__AVX2__)
+constexpr Int register_bytes = 32, block_vectors = 3, group = 4;  // 12 of 16
+#else
+constexpr Int register_bytes = 16, block_vectors = 2, group = 4;  // 8 of 16
+#endif
+
+typedef float FloatVector __attribute__((vector_size(register_bytes)));
+typedef double DoubleVector __attribute__((vector_size(register_bytes)));
+typedef std::int32_t FloatMask __attribute__((vector_size(register_bytes)));
+typedef std::int64_t DoubleMask __attribute__((vector_size(register_bytes)));
+
+template <class T>
+struct Simd;
+template <>
+struct Simd<float> {
+  using Vector = FloatVector;
+  using Mask = FloatMask;
+};
+template <>
+struct Simd<double> {
+  using Vector = DoubleVector;
+  using Mask = DoubleMask;
+};
+
+template <class T>
+using Vector = typename Simd<T>::Vector;
+template <class T>
+constexpr Int lanes = register_bytes / static_cast<Int>(sizeof(T));
+template <class T>
+constexpr Int slab_rows = block_vectors* lanes<T>;
+template <class T>
+constexpr Int panel_columns = 120 / slab_rows<T>* slab_rows<T>;
+
+#define TAUT_INLINE [[gnu::always_inline]] inline
+
+template <class T>
+TAUT_INLINE Vector<T> load(const T* p) {
+  Vector<T> v;
+  __builtin_memcpy(&v, p, sizeof v);
+  return v;
+}
+
+template <class T>
+TAUT_INLINE void store(T* p, Vector<T> v) {
+  __builtin_memcpy(p, &v, sizeof v);
+}
+
+template <class T>
+using Mask = typename Simd<T>::Mask;
+
+template <class T>
+TAUT_INLINE Mask<T> lane_numbers() {
+  Mask<T> numbers;
+  for (Int i = 0; i < lanes<T>; ++i) numbers[i] = i;
+  return numbers;
+}
+
+// Where the mask is set v, elsewhere 0, whatever v is there.
+template <class T>
+TAUT_INLINE Vector<T> masked(Vector<T> v, Mask<T> mask) {
+  return (Vector<T>)((Mask<T>)v & mask);
+}
+
+// A register block: `group` columns of the vectors from `First` to the slab's end.
+template <class T, Int First>
+struct Block {
+  static constexpr Int vectors = block_vectors - First;
+  Vector<T> v[group][vectors];
+
+  TAUT_INLINE void load_from(const T* column) {
+    for (Int j = 0; j < group; ++j)
+      for (Int i = 0; i < vectors; ++i) v[j][i] = load(column + j * slab_rows<T> + (First + i) * lanes<T>);
+  }
+  TAUT_INLINE void store_to(T* column) const {
+    for (Int j = 0; j < group; ++j)
+      for (Int i = 0; i < vectors; ++i) store(column + j * slab_rows<T> + (First + i) * lanes<T>, v[j][i]);
+  }
+  TAUT_INLINE void clear() {
+    for (Int j = 0; j < group; ++j)
+      for (Int i = 0; i < vectors; ++i) v[j][i] = Vector<T>{};
+  }
+  // Rows of the slab above `row`, which lies in the first vector, become 0.
+  TAUT_INLINE void clear_above(Int row) {
+    const Mask<T> keep = lane_numbers<T>() >= row - First * lanes<T>;
+    for (Int j = 0; j < group; ++j) v[j][0] = masked<T>(v[j][0], keep);
+  }
+  // v -= A Bᵀ over k columns: a is a slab, b points at the group's first row in another one.
+  TAUT_INLINE void subtract_product(const T* a, const T* b, Int count) {
+    a += First * lanes<T>;
+    for (Int k = 0; k < count; ++k, a += slab_rows<T>, b += slab_rows<T>) {
+      Vector<T> column[vectors];
+      for (Int i = 0; i < vectors; ++i) column[i] = load(a + i * lanes<T>);
+#pragma GCC unroll 8
+      for (Int j = 0; j < group; ++j) {
+        const T factor = b[j];
+#pragma GCC unroll 4
+        for (Int i = 0; i < vectors; ++i) v[j][i] -= column[i] * factor;
+      }
+    }
+  }
+  // v = v L⁻ᵀ with the group's triangle of L (diagonal inverted), whose first row and column are at `triangle`.
+  TAUT_INLINE void solve_triangle(const T* triangle) {
+#pragma GCC unroll 8
+    for (Int j = 0; j < group; ++j) {
+#pragma GCC unroll 4
+      for (Int i = 0; i < vectors; ++i) v[j][i] *= triangle[j * slab_rows<T> + j];
+#pragma GCC unroll 8
+      for (Int l = j + 1; l < group; ++l)
+#pragma GCC unroll 4
+        for (Int i = 0; i < vectors; ++i) v[l][i] -= v[j][i] * triangle[j * slab_rows<T> + l];
+    }
+  }
+};
+
+TAUT_INLINE float square_root(float x) { return __builtin_sqrtf(x); }
+TAUT_INLINE double square_root(double x) { return __builtin_sqrt(x); }
+
+// Cholesky of the group's triangle in place, diagonal inverted. The column of a bad pivot, or -1.
+template <class T>
+TAUT_INLINE Int factor_triangle(T* triangle, double& bad_value) {
+  constexpr T largest = sizeof(T) == 4 ? T(__FLT_MAX__) : T(__DBL_MAX__);
+  Int bad = -1;
+#pragma GCC unroll 8
+  for (Int j = 0; j < group; ++j) {
+    T* column = triangle + j * slab_rows<T>;
+    const T pivot = column[j];
+    if (!(pivot > T(0) && pivot <= largest) && bad < 0) bad = j, bad_value = static_cast<double>(pivot);
+    column[j] = T(1) / square_root(pivot);
+#pragma GCC unroll 8
+    for (Int i = j + 1; i < group; ++i) column[i] *= column[j];
+#pragma GCC unroll 8
+    for (Int l = j + 1; l < group; ++l)
+#pragma GCC unroll 8
+      for (Int i = l; i < group; ++i) triangle[l * slab_rows<T> + i] -= column[i] * column[l];
+  }
+  return bad;
+}
+
+// Calls f.template operator()<First>() with the first vector that holds row `row` of a slab.
+template <class T, class Function>
+TAUT_INLINE void from_row(Int row, Function f) {
+  const Int first = row / lanes<T>;
+  if constexpr (block_vectors > 2) {
+    if (first >= 2) return f.template operator()<2>();
+  }
+  first == 0 ? f.template operator()<0>() : f.template operator()<1>();
+}
+
+// The part of a panel that eliminate() works on.
+template <class T>
+struct Panel {
+  const FrontShape& shape;
+  T* values;
+  T* slab(Int b) const { return values + shape.panel_offset(b); }
+};
+
+// Columns of one slab: subtracts the product over the columns 0 ... before-1, all of them eliminated, in pieces that stay in the
+// first-level cache.
+template <class T>
+void subtract_earlier_panels(const Panel<T>& panel, T* slab, Int before, Int begin, Int end) {
+  constexpr Int r = slab_rows<T>;
+  for (Int k = 0; k < before; k += panel_columns<T>)
+    for (Int c = begin; c < end; c += group) {
+      Block<T, 0> block;
+      block.load_from(slab + c * r);
+      block.subtract_product(slab + k * r, panel.slab(c / r) + c % r + k * r, panel_columns<T>);
+      block.store_to(slab + c * r);
+    }
+}
+
+// The columns of the slab that lie left of its diagonal block: product and triangular solve in one pass.
+template <class T>
+void solve_columns(const Panel<T>& panel, T* slab, Int begin, Int end) {
+  constexpr Int r = slab_rows<T>;
+  for (Int c = begin; c < end; c += group) {
+    const T* pivot_rows = panel.slab(c / r) + c % r;
+    Block<T, 0> block;
+    block.load_from(slab + c * r);
+    block.subtract_product(slab + begin * r, pivot_rows + begin * r, c - begin);
+    block.solve_triangle(pivot_rows + c * r);
+    block.store_to(slab + c * r);
+  }
+}
+
+// Columns begin ... end-1 of the diagonal block of slab b; the product starts at column `from`.
+template <class T>
+BadPivot factor_columns(T* slab, Int from, Int begin, Int end) {
+  constexpr Int r = slab_rows<T>;
+  BadPivot bad;
+  for (Int c = begin; c < end && bad.column < 0; c += group) {
+    from_row<T>(c % r, [&]<Int First>() {
+      T* pivot_rows = slab + c % r;
+      Block<T, First> block;
+      block.load_from(slab + c * r);
+      block.subtract_product(slab + from * r, pivot_rows + from * r, c - from);
+      block.clear_above(c % r);
+      block.store_to(slab + c * r);
+      T triangle[group * r];
+      for (Int j = 0; j < group; ++j)
+        for (Int i = j; i < group; ++i) triangle[j * r + i] = pivot_rows[(c + j) * r + i];
+      const Int column = factor_triangle(triangle, bad.value);
+      if (column >= 0) bad.column = c + column;
+      block.solve_triangle(triangle);
+      block.store_to(slab + c * r);
+      for (Int j = 0; j < group; ++j) {
+        for (Int i = 0; i < j; ++i) pivot_rows[(c + j) * r + i] = T(0);
+        pivot_rows[(c + j) * r + j] = triangle[j * r + j];
+      }
+    });
+  }
+  return bad;
+}
+
+template <class T>
+BadPivot eliminate(const FrontShape& shape, T* values, Int slab_begin, Int slab_end, Int begin, Int end) {
+  constexpr Int r = slab_rows<T>;
+  const Panel<T> panel{shape, values};
+  for (Int b = slab_begin; b < slab_end; ++b) {
+    T* slab = panel.slab(b);
+    const Int diagonal = r * b, stop = end < diagonal + r ? end : diagonal + r;
+    if (begin > 0) subtract_earlier_panels(panel, slab, begin, begin, stop);
+    solve_columns(panel, slab, begin, stop < diagonal ? stop : diagonal);
+    if (stop > diagonal) {
+      const BadPivot bad = factor_columns<T>(slab, begin, diagonal, stop);
+      if (bad.column >= 0) return bad;
+    }
+  }
+  return {};
+}
+
+// One R x R tile of the update, or on the diagonal its lower part.
+template <class T>
+void form_tile(const FrontShape& shape, const T* panel, T* update, Int row_slab, Int column_slab) {
+  constexpr Int r = slab_rows<T>;
+  const T* rows = panel + shape.panel_offset(row_slab);
+  const T* others = panel + shape.panel_offset(column_slab);
+  T* out = update + shape.update_offset(row_slab);
+  const Int first = r * column_slab > shape.columns ? r * column_slab : shape.columns, last = r * (column_slab + 1);
+  for (Int k = 0; k < shape.columns || k == 0; k += panel_columns<T>) {
+    const Int count = shape.columns - k < panel_columns<T> ? shape.columns - k : panel_columns<T>;
+    for (Int c = first; c < last; c += group) {
+      from_row<T>(row_slab == column_slab ? c % r : 0, [&]<Int First>() {
+        Block<T, First> block;
+        T* column = out + (c - shape.columns) * r;
+        k == 0 ? block.clear() : block.load_from(column);
+        block.subtract_product(rows + k * r, others + k * r + c % r, count);
+        block.store_to(column);
+      });
+    }
+  }
+}
+
+template <class T>
+void form_update(const FrontShape& shape, const T* panel, T* update, Int begin, Int end) {
+  const Int first = shape.first_update_slab();
+  Int row = 0;
+  while ((row + 1) * (row + 2) / 2 <= begin) ++row;
+  for (Int t = begin, column = begin - row * (row + 1) / 2; t < end; ++t) {
+    form_tile(shape, panel, update, first + row, first + column);
+    if (++column > row) ++row, column = 0;
+  }
+}
+
+// Adds `columns` columns of a piece; of a piece on the diagonal, column j from row j on. Whole vectors of the target are read and written;
+// what is not of the piece adds 0.
+template <class T, bool on_diagonal>
+TAUT_INLINE void add_piece(const T* source, T* target, Int first_row, Int rows, Int columns) {
+  constexpr Int r = slab_rows<T>;
+  for (Int row = first_row / lanes<T> * lanes<T>; row < first_row + rows; row += lanes<T>) {
+    const Mask<T> row_in_piece = lane_numbers<T>() + (row - first_row);
+    Mask<T> mask = (row_in_piece >= 0) & (row_in_piece < rows);
+    const T* from = source + (row - first_row);
+    T* to = target + row;
+    for (Int j = 0; j < columns; ++j, from += r, to += r) {
+      if constexpr (on_diagonal) mask &= row_in_piece >= j;
+      store<T>(to, load(to) + masked<T>(load(from), mask));
+    }
+  }
+}
+
+template <class T>
+void add_update(const FrontShape& child, const T* update, const RowPiece* pieces, Int column_begin, Int column_end, Int row_begin,
+                Int row_end, const FrontShape& parent, T* target, bool target_is_panel) {
+  constexpr Int r = slab_rows<T>;
+  const Int column_shift = target_is_panel ? 0 : parent.columns;
+  for (Int k = row_begin > column_begin ? row_begin : column_begin; k < row_end; ++k) {
+    const RowPiece rows = pieces[k];
+    const T* from = update + child.update_offset(rows.from / r) + rows.from % r;
+    T* to = target + (target_is_panel ? parent.panel_offset(rows.to / r) : parent.update_offset(rows.to / r));
+    for (Int q = column_begin; q < column_end && q <= k; ++q) {
+      const RowPiece columns = pieces[q];
+      const T* source = from + (columns.from - child.columns) * r;
+      T* sum = to + (columns.to - column_shift) * r;
+      q == k ? add_piece<T, true>(source, sum, rows.to % r, rows.count, columns.count)
+             : add_piece<T, false>(source, sum, rows.to % r, rows.count, columns.count);
+    }
+  }
+}
+
+// y -= slab x over `count` columns.
+template <class T>
+TAUT_INLINE void subtract_slab_product(const T* slab, const T* x, Int count, T* y) {
+  Vector<T> sum[2][block_vectors] = {};
+  for (Int i = 0; i < block_vectors; ++i) sum[0][i] = load(y + i * lanes<T>);
+  Int k = 0;
+  for (; k + 2 <= count; k += 2)
+#pragma GCC unroll 2
+    for (Int u = 0; u < 2; ++u)
+#pragma GCC unroll 4
+      for (Int i = 0; i < block_vectors; ++i) sum[u][i] -= load(slab + (k + u) * slab_rows<T> + i * lanes<T>) * x[k + u];
+  for (; k < count; ++k)
+    for (Int i = 0; i < block_vectors; ++i) sum[0][i] -= load(slab + k * slab_rows<T> + i * lanes<T>) * x[k];
+  for (Int i = 0; i < block_vectors; ++i) store<T>(y + i * lanes<T>, sum[0][i] + sum[1][i]);
+}
+
+// The group's triangular solve: y -> x.
+template <class T>
+TAUT_INLINE void forward_triangle(const T* triangle, const T* y, T* x) {
+  T value[group];
+  for (Int j = 0; j < group; ++j) value[j] = y[j];
+#pragma GCC unroll 8
+  for (Int j = 0; j < group; ++j) {
+    value[j] *= triangle[j * slab_rows<T> + j];
+#pragma GCC unroll 8
+    for (Int i = j + 1; i < group; ++i) value[i] -= triangle[j * slab_rows<T> + i] * value[j];
+  }
+  for (Int j = 0; j < group; ++j) x[j] = value[j];
+}
+
+template <class T>
+void forward(const FrontShape& shape, const T* panel, T* x) {
+  constexpr Int r = slab_rows<T>;
+  for (Int b = 0; b < shape.slabs(); ++b) {
+    const T* slab = panel + shape.panel_offset(b);
+    const Int diagonal = r * b, stop = shape.panel_width(b);
+    subtract_slab_product(slab, x, diagonal < stop ? diagonal : stop, x + diagonal);
+    if (stop <= diagonal) continue;
+    T y[r];
+    for (Int i = 0; i < r; ++i) y[i] = x[diagonal + i];
+    for (Int c = diagonal; c < stop; c += group) {
+      forward_triangle(slab + c * r + c % r, y + c % r, x + c);
+      subtract_slab_product(slab + c * r, x + c, group, y);
+    }
+    for (Int i = stop - diagonal; i < r; ++i) x[diagonal + i] = y[i];
+  }
+}
+
+// sum[k] += slab column k times x, lane by lane.
+template <class T>
+TAUT_INLINE void add_transposed_product(const T* slab, const T* x, Int count, Vector<T>* sum) {
+  Vector<T> factor[block_vectors];
+  for (Int i = 0; i < block_vectors; ++i) factor[i] = load(x + i * lanes<T>);
+  for (Int k = 0; k < count; ++k, slab += slab_rows<T>) {
+    Vector<T> s = sum[k];
+    for (Int i = 0; i < block_vectors; ++i) s += load(slab + i * lanes<T>) * factor[i];
+    sum[k] = s;
+  }
+}
+
+template <class T>
+TAUT_INLINE T sum_of_lanes(Vector<T> v) {
+  T half[lanes<T>];
+  store(half, v);
+  for (Int width = lanes<T> / 2; width > 0; width /= 2)
+    for (Int i = 0; i < width; ++i) half[i] += half[i + width];
+  return half[0];
+}
+
+// x of the columns begin ... end-1 minus the products with all slabs from `slab_begin` on.
+template <class T>
+TAUT_INLINE void subtract_rows_below(const FrontShape& shape, const T* panel, T* x, Int slab_begin, Int begin, Int end) {
+  constexpr Int chunk = 128;
+  for (Int c = begin; c < end; c += chunk) {
+    const Int count = end - c < chunk ? end - c : chunk;
+    Vector<T> sum[chunk];
+    for (Int k = 0; k < count; ++k) sum[k] = Vector<T>{};
+    for (Int b = slab_begin; b < shape.slabs(); ++b)
+      add_transposed_product(panel + shape.panel_offset(b) + c * slab_rows<T>, x + b * slab_rows<T>, count, sum);
+    for (Int k = 0; k < count; ++k) x[c + k] -= sum_of_lanes<T>(sum[k]);
+  }
+}
+
+template <class T>
+TAUT_INLINE void backward_triangle(const T* triangle, T* x) {
+  T value[group];
+  for (Int j = 0; j < group; ++j) value[j] = x[j];
+#pragma GCC unroll 8
+  for (Int j = group - 1; j >= 0; --j) {
+#pragma GCC unroll 8
+    for (Int i = j + 1; i < group; ++i) value[j] -= triangle[j * slab_rows<T> + i] * value[i];
+    value[j] *= triangle[j * slab_rows<T> + j];
+  }
+  for (Int j = 0; j < group; ++j) x[j] = value[j];
+}
+
+template <class T>
+void backward(const FrontShape& shape, const T* panel, T* x) {
+  constexpr Int r = slab_rows<T>;
+  const Int last = (shape.columns - 1) / r;  // the last slab with pivots
+  if (shape.columns == 0) return;
+  subtract_rows_below(shape, panel, x, last + 1, 0, shape.columns);
+  for (Int b = last; b >= 0; --b) {
+    const T* slab = panel + shape.panel_offset(b);
+    const Int diagonal = r * b, stop = shape.panel_width(b);
+    // y: the slab's rows, 0 above the group that is solved, so that whole vectors may be multiplied.
+    T y[r];
+    for (Int i = 0; i < r; ++i) y[i] = diagonal + i < stop ? T(0) : x[diagonal + i];
+    for (Int c = stop - group; c >= diagonal; c -= group) {
+      for (Int j = 0; j < group; ++j) {
+        Vector<T> sum{};
+        add_transposed_product<T>(slab + (c + j) * r, y, 1, &sum);
+        x[c + j] -= sum_of_lanes<T>(sum);
+      }
+      backward_triangle(slab + c * r + c % r, x + c);
+      for (Int j = 0; j < group; ++j) y[c % r + j] = x[c + j];
+    }
+    if (diagonal > 0) {
+      constexpr Int chunk = 128;
+      for (Int c = 0; c < diagonal; c += chunk) {
+        const Int count = diagonal - c < chunk ? diagonal - c : chunk;
+        Vector<T> sum[chunk];
+        for (Int k = 0; k < count; ++k) sum[k] = Vector<T>{};
+        add_transposed_product(slab + c * r, x + diagonal, count, sum);
+        for (Int k = 0; k < count; ++k) x[c + k] -= sum_of_lanes<T>(sum[k]);
+      }
+    }
+  }
+}
+
+template <class T>
+constexpr FrontKernels<T> kernels_of(const char* name) {
+  return {name, slab_rows<T>, group, panel_columns<T>, &eliminate<T>, &form_update<T>, &add_update<T>, &forward<T>, &backward<T>};
+}
+
+}  // namespace
+
+extern const FrontKernels<float> float_kernels = kernels_of<float>(TAUT_KERNELS_NAME);
+extern const FrontKernels<double> double_kernels = kernels_of<double>(TAUT_KERNELS_NAME);
+
+}  // namespace taut::TAUT_KERNELS
