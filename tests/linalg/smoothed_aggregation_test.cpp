@@ -73,7 +73,7 @@ int iterations(const BlockCsr& a, const Preconditioner& m) {
 
 TEST(Aggregation, CoversAGridWithConnectedGroups) {
   const BlockCsr a = poisson(40);
-  NodeGraph graph{{0}, {}, {}};
+  WeightedGraph graph{{0}, {}, {}};
   for (Index i = 0; i < a.rows(); ++i) {
     for (Index k = a.pattern->row_start[i]; k < a.pattern->row_start[i + 1]; ++k)
       if (a.pattern->column[k] != i) graph.neighbour.push_back(a.pattern->column[k]), graph.weight.push_back(1.0);

@@ -2,7 +2,7 @@
 
 namespace taut {
 
-Aggregation aggregate(const NodeGraph& graph) {
+Aggregation aggregate(const WeightedGraph& graph) {
   const Index n = graph.nodes();
   Aggregation result;
   std::vector<Index>& group = result.group;

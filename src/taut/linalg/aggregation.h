@@ -15,7 +15,7 @@
 namespace taut {
 
 // A graph by rows; weight: how strongly a neighbour is coupled. A node without neighbours becomes a group of its own.
-struct NodeGraph {
+struct WeightedGraph {
   std::vector<Index> start, neighbour;
   std::vector<double> weight;
   Index nodes() const { return static_cast<Index>(start.size()) - 1; }
@@ -26,6 +26,6 @@ struct Aggregation {
   Index groups = 0;
 };
 
-Aggregation aggregate(const NodeGraph& graph);
+Aggregation aggregate(const WeightedGraph& graph);
 
 }  // namespace taut

@@ -101,12 +101,12 @@ struct AmgLevel {
     }
   }
 
-  NodeGraph graph(double strength) const {
+  WeightedGraph graph(double strength) const {
     std::vector<double> size_of(static_cast<std::size_t>(nodes()), 0.0);
     for (Index i = 0; i < nodes(); ++i)
       for (Index k = a.start[i]; k < a.start[i + 1]; ++k)
         if (a.column[k] == i) size_of[i] = a.values[k].norm();
-    NodeGraph result;
+    WeightedGraph result;
     result.start.push_back(0);
     for (Index i = 0; i < nodes(); ++i) {
       for (Index k = a.start[i]; k < a.start[i + 1]; ++k) {
