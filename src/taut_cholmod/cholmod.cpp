@@ -17,6 +17,30 @@ void hold_blas_to_one_thread() {
   if (const auto set_threads = reinterpret_cast<SetThreads>(dlsym(RTLD_DEFAULT, "openblas_set_num_threads"))) set_threads(1);
 }
 
+// CHOLMOD's supernodal loops ask OpenMP for four threads, however many processors there are, for loops of a few hundred numbers: on two
+// processors a factorisation then takes twice as long as on one thread. While this lives, OpenMP starts no threads.
+class SerialOpenMp {
+ public:
+  SerialOpenMp() {
+    using Get = int (*)();
+    const auto get = reinterpret_cast<Get>(dlsym(RTLD_DEFAULT, "omp_get_max_active_levels"));
+    set_ = reinterpret_cast<Set>(dlsym(RTLD_DEFAULT, "omp_set_max_active_levels"));
+    if (!get || !set_) return;
+    before_ = get();
+    set_(0);
+  }
+  ~SerialOpenMp() {
+    if (before_ >= 0) set_(before_);
+  }
+  SerialOpenMp(const SerialOpenMp&) = delete;
+  SerialOpenMp& operator=(const SerialOpenMp&) = delete;
+
+ private:
+  using Set = void (*)(int);
+  Set set_ = nullptr;
+  int before_ = -1;
+};
+
 Status status_from(const cholmod_common& common, const char* phase) {
   switch (common.status) {
     case CHOLMOD_OK:
@@ -129,6 +153,7 @@ Status CholmodCholesky::factorize(const BlockCsr& a) {
   lower_triangle(a, me.csc);
   if (me.empty()) return {};
   cholmod_sparse view = me.view();
+  const SerialOpenMp serial;
   cholmod_factorize(&view, me.factor, &me.common);
   Status status = status_from(me.common, "factorisation");
   std::size_t bad = me.factor->n;
