@@ -67,7 +67,8 @@ std::vector<ReportRow> bench_table2(const BenchOptions& options) {
                      "paper"});
     for (const int k : options.stiffnesses.empty() ? std::vector<int>{60, 600, 6000} : options.stiffnesses) {
       fmt::print(stderr, "table2: {} nodes at k_strh = {} ...\n", size.nodes, k);
-      const std::vector<std::string> settings{fmt::format("cloth.grid.nodes=[{0},{0}]", size.side), fmt::format("time.step={}", size.step), fmt::format("cloth.k_stretch={}", k)};
+      const std::vector<std::string> settings{fmt::format("cloth.grid.nodes=[{0},{0}]", size.side), fmt::format("time.step={}", size.step), fmt::format("cloth.k_stretch={}", k),
+                                             "solver.name=\"core_fast\""};  // for the way there
       Simulation simulation(read_scene(options.scenes + "/ball.toml", settings));
       const auto cells = measure(simulation, methods, {options.tolerance, options.steps, options.equal_error_every, 1e-3, "cholmod"},
                                  [](const Simulation&, const StepRecord& record) { return record.contacts > 0; });
