@@ -53,6 +53,7 @@ class ConstraintSet {
   std::span<const std::int8_t> ndofs() const { return ndof_; }
   // Columns of U_i: the first ndof(i) columns of this matrix; the others complete it to an orthogonal matrix and span the constrained directions.
   const Mat3& frame(Index i) const { return frame_[i]; }
+  std::span<const Mat3> frames() const { return frame_; }
   const Vec3& displacement(Index i) const { return displacement_[i]; }
   // S_i, exactly I or 0 for ndof 3 or 0.
   Mat3 projection(Index i) const;

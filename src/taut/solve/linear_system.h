@@ -44,6 +44,8 @@ struct SolveSummary {
   double order_ms = 0.0;         // analysis (ordering and symbolic work)
   double factor_ms = 0.0;        // numerical factorisation or other set-up of the preconditioner
   double solve_ms = 0.0;         // the loop, or the triangular solves
+  const char* precision = "double";  // of the factor that the answer came from: "single" or "double"
+  int fallbacks = 0;             // times that single precision failed and double precision took over
   double memory_bytes = 0.0;     // what the method holds beyond A and the vectors
   std::string remark;            // "on eigen: CHOLMOD is not built in", ...
   double total_ms() const { return reduce_ms + order_ms + factor_ms + solve_ms; }

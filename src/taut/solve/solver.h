@@ -13,6 +13,9 @@
 //   eq10[:block_diagonal|:ilu0]          BiCGSTAB on S A + d (I-S), the paper's Eq. 10, which MATH.md shows to be equivalent after all
 //   cholmod, pardiso, eigen_ldlt         direct: sparse Cholesky of Ã                                                              (Section 4)
 //   pardiso_cgs                          PARDISO's own CG on the factor of an earlier step, its "Pardiso(2)"; library taut_pardiso       (Table 2)
+//   cholmod_reused_analysis              cholmod, its analysis kept while the reduced pattern stays, whatever the options say
+//   block_cholesky                       direct: Taut's own factorisation of Ã (linalg/block_cholesky.h)
+//   core_fast                            core_pcg's method on that factorisation, in single precision where it holds (solve/core_fast.h)
 //   core_pcg[:cholmod|:eigen|:pardiso]   PCG on Ã, preconditioned by the factorised matrix core                                    (Section 6)
 //
 // d: a mass per node, the mean of A's diagonal there, so that kilograms are not added to pure numbers. Without :VARIANT the first one listed is meant;

@@ -1,6 +1,8 @@
 #pragma once
 // The graph that was analysed: the nodes of A that have unknowns, and which of them share a block.
 
+#include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -11,6 +13,8 @@ namespace taut {
 
 struct AnalyzedGraph {
   NodeGraph graph;            // of the nodes with unknowns, numbered in A's order; neighbours ascending
+  std::vector<Index> block;   // per neighbour: which block of A it is ...
+  std::vector<Index> diagonal;  // ... and per node its diagonal block
   std::vector<Index> node;    // the number of each in A
   std::vector<Index> weight;  // its unknowns, at least 1
   Index rows = 0;             // nodes of A
@@ -20,6 +24,7 @@ struct AnalyzedGraph {
   std::string mismatch(const BlockPattern& pattern) const;
 };
 
-AnalyzedGraph analyzed_graph(const BlockPattern& pattern);
+// mask: one byte per block of the pattern, 0 for blocks that are left out; empty: all are in. Diagonal blocks always are.
+AnalyzedGraph analyzed_graph(const BlockPattern& pattern, std::span<const std::uint8_t> mask = {});
 
 }  // namespace taut

@@ -1,7 +1,5 @@
 #include "taut/linalg/block_cholesky/factor_layout.h"
 
-#include <algorithm>
-
 #include "taut/linalg/block_cholesky/elimination_tree.h"
 
 namespace taut {
@@ -78,16 +76,16 @@ class LayoutBuilder {
     for (Index k = layout_.front[s].first_node; k < layout_.front[s].last_node; ++k) {
       const NodeGraph& graph = analyzed_.graph;
       const Index i = tree_.order[k];
-      const std::size_t begin = layout_.block.size();
-      layout_.block.push_back({analyzed_.node[i], row_of_[k]});
-      for (Index e = graph.start[i]; e < graph.start[i + 1]; ++e) {
-        const Index other = place_[graph.neighbour[e]];
-        if (other > k) layout_.block.push_back({analyzed_.node[graph.neighbour[e]], row_of_[other]});
-      }
-      std::sort(layout_.block.begin() + static_cast<std::ptrdiff_t>(begin), layout_.block.end(),
-                [](const BlockPlace& a, const BlockPlace& b) { return a.node < b.node; });
+      add_block(layout_.front[s].shape, k, analyzed_.diagonal[i]);
+      for (Index e = graph.start[i]; e < graph.start[i + 1]; ++e)
+        if (const Index other = place_[graph.neighbour[e]]; other > k) add_block(layout_.front[s].shape, other, analyzed_.block[e]);
       layout_.block_start.push_back(static_cast<Index>(layout_.block.size()));
     }
+  }
+
+  void add_block(const FrontShape& shape, Index place, Index source) {
+    const Index row = row_of_[place], in_slab = row % slab_rows_;
+    layout_.block.push_back({place, source, row, slab_rows_ - in_slab, shape.panel_offset(row / slab_rows_) + in_slab});
   }
 
   // How the rows of child c lie in its parent s: runs, cut at the borders of slabs and at the end of the parent's pivots.

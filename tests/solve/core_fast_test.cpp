@@ -1,0 +1,110 @@
+// core_fast takes core_pcg's steps, whatever the constraints; it goes to double precision by itself, and says so.
+
+#include <gtest/gtest.h>
+
+#include "solve/constrained_case.h"
+
+namespace taut::test {
+namespace {
+
+TEST(CoreFast, TakesTheStepsOfCorePcg) {
+  Random random(1);
+  for (int trial = 0; trial < 10; ++trial) {
+    CaseOptions options;
+    options.nodes = 60;
+    const ConstrainedCase c = random_case(random, options);
+    std::vector<double> x(c.b.size()), expected(c.b.size());
+    const SolveSummary slow = make_solver(solver_options("core_pcg:eigen", 1e-4))->solve(c.system(), expected);
+    const SolveSummary fast = make_solver(solver_options("core_fast", 1e-4))->solve(c.system(), x);
+    ASSERT_TRUE(fast.status.ok()) << fast.status.message;
+    EXPECT_EQ(fast.iterations, slow.iterations);
+    EXPECT_NEAR(fast.start_value, slow.start_value, 1e-5 * slow.start_value);
+    EXPECT_NEAR(fast.stop_value, slow.stop_value, 1e-2 * slow.stop_value);
+    EXPECT_LT(relative_difference(x, as_eigen(expected)), 1e-5);
+    EXPECT_STREQ(fast.precision, "single");
+    EXPECT_EQ(fast.fallbacks, 0);
+  }
+}
+
+// One object, one matrix pattern, contacts that come and go.
+TEST(CoreFast, KeepsItsAnalysisWhileConstraintsChange) {
+  Random random(2);
+  for (const std::string name : {"core_fast", "block_cholesky"}) {
+    const auto solver = make_solver(solver_options(name, 1e-10));
+    ConstrainedCase first = random_case(random, {});
+    for (int trial = 0; trial < 8; ++trial) {
+      ConstrainedCase c = random_case(random, {});
+      c.a = BlockCsr(first.a.pattern);
+      c.a.values = random_spd(random, first.a.pattern).values;
+      c.core.clear();
+      for (Index i = 0; i < c.a.rows(); ++i)
+        for (Index k = c.a.pattern->row_start[i]; k < c.a.pattern->row_start[i + 1]; ++k) c.core.push_back(std::abs(c.a.pattern->column[k] - i) <= 1);
+      std::vector<double> x(c.b.size());
+      const SolveSummary summary = solver->solve(c.system(), x);
+      ASSERT_TRUE(summary.status.ok()) << summary.status.message;
+      EXPECT_LT(relative_difference(x, c.solution()), 1e-8) << name;
+    }
+  }
+}
+
+TEST(CoreFast, FallsBackToDoubleWhenSingleOverflows) {
+  Random random(3);
+  ConstrainedCase c = random_case(random, {});
+  for (double& value : c.a.values) value *= 1e100;
+  std::vector<double> x(c.b.size());
+  const SolveSummary summary = make_solver(solver_options("core_fast", 1e-8))->solve(c.system(), x);
+  ASSERT_TRUE(summary.status.ok()) << summary.status.message;
+  EXPECT_STREQ(summary.precision, "double");
+  EXPECT_EQ(summary.fallbacks, 1);
+  EXPECT_FALSE(summary.remark.empty());
+  EXPECT_LT(relative_difference(x, c.solution()), 1e-6);
+}
+
+// A stiff chain whose core, the whole matrix, has a condition number beyond single precision: pivots may stay positive, but the preconditioner is
+// far off and conjugate gradients would not end.
+TEST(CoreFast, FallsBackToDoubleWhenSingleDoesNotConverge) {
+  Random random(4);
+  for (const double stiffness : {1e8, 1e10, 1e12}) {
+    ConstrainedCase c;
+    const Index nodes = 400;
+    c.a = BlockCsr(make_pattern(random_graph(random, nodes, 0, 1), 3));
+    for_each_entry(c.a, [&](Index row, Index column, double& value) {
+      if (row == column) {
+        value = 1.0 + (row < 3 || row >= 3 * (nodes - 1) ? 1.0 : 2.0) * stiffness;
+      } else if (row % 3 == column % 3) {
+        value = -stiffness;
+      }
+    });
+    c.b = random.vector(3 * nodes), c.z.assign(c.b.size(), 0.0);
+    c.constraints.reset(nodes);
+    c.core.assign(static_cast<std::size_t>(c.a.pattern->blocks()), 1);
+    std::vector<double> x(c.b.size());
+    const SolveSummary summary = make_solver(solver_options("core_fast", 1e-6))->solve(c.system(), x);
+    ASSERT_TRUE(summary.status.ok()) << summary.status.message;
+    EXPECT_LT(summary.stop_value, 1e-6);
+    if (stiffness >= 1e10) EXPECT_EQ(summary.fallbacks, 1) << stiffness;
+  }
+}
+
+TEST(CoreFast, NothingToDo) {
+  Random random(5);
+  ConstrainedCase c = random_case(random, {.only = 0});
+  std::vector<double> x(c.b.size());
+  const SolveSummary summary = make_solver(solver_options("core_fast", 1e-6))->solve(c.system(), x);
+  EXPECT_TRUE(summary.status.ok());
+  EXPECT_EQ(summary.iterations, 0);
+  EXPECT_EQ(x, c.z);
+}
+
+TEST(CoreFast, AnIndefiniteMatrixIsReported) {
+  Random random(6);
+  ConstrainedCase c = random_case(random, {.only = 3});
+  for (double& value : c.a.values) value = -value;
+  std::vector<double> x(c.b.size());
+  const SolveSummary summary = make_solver(solver_options("core_fast", 1e-6))->solve(c.system(), x);
+  EXPECT_EQ(summary.status.outcome, Outcome::not_positive_definite);
+  EXPECT_EQ(summary.fallbacks, 1);
+}
+
+}  // namespace
+}  // namespace taut::test
