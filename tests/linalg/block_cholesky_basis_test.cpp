@@ -69,7 +69,8 @@ class BlockFactorBasis : public testing::TestWithParam<CholeskyPrecision> {
   BlockCholesky cholesky_{GetParam()};
 };
 
-INSTANTIATE_TEST_SUITE_P(Precisions, BlockFactorBasis, testing::Values(CholeskyPrecision::double_precision, CholeskyPrecision::single_precision),
+INSTANTIATE_TEST_SUITE_P(Precisions, BlockFactorBasis,
+                         testing::Values(CholeskyPrecision::double_precision, CholeskyPrecision::single_precision),
                          [](const auto& p) { return p.param == CholeskyPrecision::double_precision ? "double" : "single"; });
 
 // `size`: of b, to see that single precision does not run out of range.

@@ -25,7 +25,9 @@ class BlockFactor : public testing::TestWithParam<CholeskyPrecision> {
     const std::vector<double> b = random_.vector(a.dofs());
     std::vector<double> x(b.size(), std::numeric_limits<double>::quiet_NaN());
     ASSERT_TRUE(cholesky_.solve(b, x).ok());
-    if (a.dofs() > 0) EXPECT_LT(relative_difference(x, dense(a).llt().solve(as_eigen(b))), tolerance());
+    if (a.dofs() > 0) {
+      EXPECT_LT(relative_difference(x, dense(a).llt().solve(as_eigen(b))), tolerance());
+    }
   }
 
   Random random_{1};
@@ -50,7 +52,9 @@ TEST_P(BlockFactor, DenseMatrix) {
   expect_solves(random_spd(random_, make_pattern(all, 3), 1e-2));
 }
 
-TEST_P(BlockFactor, DiagonalMatrix) { expect_solves(random_spd(random_, make_pattern(std::vector<std::vector<Index>>(30), random_dims(random_, 30)))); }
+TEST_P(BlockFactor, DiagonalMatrix) {
+  expect_solves(random_spd(random_, make_pattern(std::vector<std::vector<Index>>(30), random_dims(random_, 30))));
+}
 
 TEST_P(BlockFactor, SeveralComponents) {
   std::vector<std::vector<Index>> columns;

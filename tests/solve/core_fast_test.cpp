@@ -38,7 +38,8 @@ TEST(CoreFast, KeepsItsAnalysisWhileConstraintsChange) {
       c.a.values = random_spd(random, first.a.pattern).values;
       c.core.clear();
       for (Index i = 0; i < c.a.rows(); ++i)
-        for (Index k = c.a.pattern->row_start[i]; k < c.a.pattern->row_start[i + 1]; ++k) c.core.push_back(std::abs(c.a.pattern->column[k] - i) <= 1);
+        for (Index k = c.a.pattern->row_start[i]; k < c.a.pattern->row_start[i + 1]; ++k)
+          c.core.push_back(std::abs(c.a.pattern->column[k] - i) <= 1);
       std::vector<double> x(c.b.size());
       const SolveSummary summary = solver->solve(c.system(), x);
       ASSERT_TRUE(summary.status.ok()) << summary.status.message;
@@ -60,8 +61,8 @@ TEST(CoreFast, FallsBackToDoubleWhenSingleOverflows) {
   EXPECT_LT(relative_difference(x, c.solution()), 1e-6);
 }
 
-// A stiff chain whose core, the whole matrix, has a condition number beyond single precision: pivots may stay positive, but the preconditioner is
-// far off and conjugate gradients would not end.
+// A stiff chain whose core, the whole matrix, has a condition number beyond single precision: pivots may stay positive, but the
+// preconditioner is far off and conjugate gradients would not end.
 TEST(CoreFast, FallsBackToDoubleWhenSingleDoesNotConverge) {
   Random random(4);
   for (const double stiffness : {1e8, 1e10, 1e12}) {
@@ -82,7 +83,7 @@ TEST(CoreFast, FallsBackToDoubleWhenSingleDoesNotConverge) {
     const SolveSummary summary = make_solver(solver_options("core_fast", 1e-6))->solve(c.system(), x);
     ASSERT_TRUE(summary.status.ok()) << summary.status.message;
     EXPECT_LT(summary.stop_value, 1e-6);
-    if (stiffness >= 1e10) EXPECT_EQ(summary.fallbacks, 1) << stiffness;
+    EXPECT_TRUE(summary.fallbacks == 1 || stiffness < 1e10) << stiffness;
   }
 }
 

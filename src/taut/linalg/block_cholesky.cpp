@@ -21,7 +21,7 @@ struct BlockCholesky::Implementation {
   std::shared_ptr<const BlockPattern> analyzed;  // null if the analysis was given no owner
   // Of the matrix last factorised:
   std::shared_ptr<const BlockPattern> pattern;
-  double scale = 1.0;  // of the last forward solve
+  double scale = 1.0;                 // of the last forward solve
   std::vector<Index> start;           // per place in the order: first unknown in A's numbering ...
   std::vector<Index> permuted_start;  // ... and in the factor's
   std::vector<Index> permutation;

@@ -1,6 +1,6 @@
 #pragma once
-// A basis per node, of some or all directions of its three unknowns: how constraints take unknowns out of a matrix of 3x3 blocks that itself stays as
-// it is.
+// A basis per node, of some or all directions of its three unknowns: how constraints take unknowns out of a matrix of 3x3 blocks that
+// itself stays as it is.
 //
 //   Qᵀ A Q       Q = blockdiag(Q_i),  Q_i = the first dim[i] columns of frame[i], orthonormal;  3N x n, n = sum of dim
 //

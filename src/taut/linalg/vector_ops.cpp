@@ -96,7 +96,9 @@ void residual_from_product(std::span<const double> b, std::span<double> r) {
 }
 
 double largest_magnitude(std::span<const double> a) {
-  return ordered_sum<Largest>(static_cast<Index>(a.size()), [&](Index begin, Index end) { return Largest{largest_kernel(&a[begin], end - begin)}; }).value;
+  return ordered_sum<Largest>(static_cast<Index>(a.size()),
+                              [&](Index begin, Index end) { return Largest{largest_kernel(&a[begin], end - begin)}; })
+      .value;
 }
 
 void step_along(double alpha, std::span<const double> p, std::span<const double> q, std::span<double> y, std::span<double> r) {

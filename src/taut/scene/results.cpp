@@ -124,8 +124,8 @@ void StatsWriter::write(const StepRecord& r, int frame) {
       ":.3e},{}\n",
       r.step, r.time, frame, r.nodes, r.dof, r.constraints, r.contacts, r.solver, optional(r.core_springs, Index{0}), r.iterations,
       r.relative_residual, r.assemble_ms, r.order_ms, r.factor_ms, r.solve_ms, r.contact_ms, r.step_ms, r.kinetic_J, r.elastic_J,
-      r.max_stretch, optional(r.bound_iterations, -1), r.precision, r.fallbacks, r.collapsed_springs, r.retries, r.contact_passes, r.contact_moved,
-      r.deepest_m, r.newton_iterations);
+      r.max_stretch, optional(r.bound_iterations, -1), r.precision, r.fallbacks, r.collapsed_springs, r.retries, r.contact_passes,
+      r.contact_moved, r.deepest_m, r.newton_iterations);
   // One write a row: a reader, or a crash, never sees half of one.
   if (std::fwrite(row.data(), 1, row.size(), file_) != row.size() || std::fflush(file_) != 0)
     throw InputError({path_.string()}, "cannot be written; is the disk full? The steps up to here are safe: `taut resume` goes on");

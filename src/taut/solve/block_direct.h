@@ -1,7 +1,7 @@
 #pragma once
 // Direct solution of the reduced system (paper Section 4) by Taut's own block Cholesky factorisation in double precision, straight from A
-// (solve/full_space.h): ordering and symbolic work once per topology, whatever contacts do and whatever SolverOptions::reuse_analysis says. The forward
-// solve is done while the factor is computed.
+// (solve/full_space.h): ordering and symbolic work once per topology, whatever contacts do and whatever SolverOptions::reuse_analysis says.
+// The forward solve is done while the factor is computed.
 
 #include "taut/linalg/block_cholesky.h"
 #include "taut/solve/solver.h"

@@ -40,8 +40,9 @@ bool CoreFast::begin_in_double(const LinearSystem& system, SolveSummary& summary
   return factorize(CholeskyPrecision::double_precision, system, summary);
 }
 
-// Work of a factorisation in double precision (twice the time of its flops in single precision) over that of an iteration: two flops an entry of the
-// factor each way and of A, which move four and eight bytes and so take about four times their share of the arithmetic's speed.
+// Work of a factorisation in double precision (twice the time of its flops in single precision) over that of an iteration: two flops an
+// entry of the factor each way and of A, which move four and eight bytes and so take about four times their share of the arithmetic's
+// speed.
 int CoreFast::single_precision_limit(const BlockCsr& a) const {
   const BlockCholeskyStatistics s = factor_.block_statistics();
   const double iteration = 16.0 * s.factor_entries + 16.0 * static_cast<double>(a.values.size());
@@ -73,8 +74,9 @@ KrylovResult CoreFast::iterate(const BlockCsr& a, std::span<double> x, int max_i
   if (!std::isfinite(delta)) {
     result.status = {Outcome::not_finite, fmt::format("the residual is not finite after {} iterations", result.iterations)};
   } else if (is_indefinite) {
-    result.status = {Outcome::not_positive_definite,
-                     fmt::format("a search direction of curvature <= 0 after {} iterations: the matrix is not positive definite", result.iterations)};
+    result.status = {
+        Outcome::not_positive_definite,
+        fmt::format("a search direction of curvature <= 0 after {} iterations: the matrix is not positive definite", result.iterations)};
   } else if (delta > limit) {
     result.status = {Outcome::max_iterations,
                      fmt::format("{} iterations reach {:.3g}, not {:.3g}", result.iterations, result.stop_value, options_.tolerance)};

@@ -5,12 +5,16 @@
 //
 // - Neither Ã nor P̃ is formed: products take A, the factorisation takes A's core blocks, and constrained nodes are looked at one by one
 //   (solve/full_space.h).
-// - Ordering and symbolic work are done once per topology and core, whatever contacts do and whatever SolverOptions::reuse_analysis says; numbers are
+// - Ordering and symbolic work are done once per topology and core, whatever contacts do and whatever SolverOptions::reuse_analysis says;
+// numbers are
 //   fresh in every solve.
-// - The stop test needs forward solves only, δ = rᵀ P̃⁻¹ r = |L⁻¹ Uᵀ r|²: δ0 comes with the factorisation, and the backward solve of the last residual
+// - The stop test needs forward solves only, δ = rᵀ P̃⁻¹ r = |L⁻¹ Uᵀ r|²: δ0 comes with the factorisation, and the backward solve of the
+// last residual
 //   is saved. k iterations take k + 1 forward and k backward solves.
-// - The factor is in single precision. When a pivot fails there, or conjugate gradients have not converged by the time that they have done as much work
-//   as a factorisation in double precision, the factor is computed anew in double precision and the loop goes on from where it is; the summary counts it.
+// - The factor is in single precision. When a pivot fails there, or conjugate gradients have not converged by the time that they have done
+// as much work
+//   as a factorisation in double precision, the factor is computed anew in double precision and the loop goes on from where it is; the
+//   summary counts it.
 //
 // Stop test and starting point are core_pcg's, so iterations agree with it but for rounding.
 
@@ -37,8 +41,8 @@ class CoreFast : public ConstrainedSolver {
   std::shared_ptr<const BlockPattern> pattern_;
   std::vector<std::uint8_t> mask_;
   BlockCholesky factor_;
-  double delta0_ = 0.0;                    // b̂ᵀ P̃⁻¹ b̂
-  std::vector<double> load_, r_, c_, q_;   // b̂, residual, direction, its product
+  double delta0_ = 0.0;                   // b̂ᵀ P̃⁻¹ b̂
+  std::vector<double> load_, r_, c_, q_;  // b̂, residual, direction, its product
 };
 
 }  // namespace taut

@@ -85,11 +85,22 @@ void NumericFactor<T>::eliminate(const FactorSource& source, Index s, bool share
   add_children(front, update, false);
 }
 
+namespace {
+
+// Rows are taken in the order of elimination, from all over A.
+void prefetch_row(const BlockCsr& a, Index node) {
+  const double* end = a.values.data() + a.pattern->value_start[node + 1];
+  for (const double* p = a.values.data() + a.pattern->value_start[node]; p < end; p += 8) __builtin_prefetch(p);
+}
+
+}  // namespace
+
 template <class T>
 void NumericFactor<T>::assemble(const FactorSource& source, const Front& front, T* panel) const {
   const Index r = front.shape.slab_rows;
   const auto set_one = [&](Index j) { panel[front.shape.panel_offset(j / r) + Offset{j} * r + j % r] = T(1); };
   for (Index k = front.first_node; k < front.last_node; ++k) {
+    if (k + 1 < static_cast<Index>(layout_.node.size())) prefetch_row(source.a, layout_.node[k + 1]);
     assemble_node(source, front, k, panel);
     for (Index j = dim_[k]; j < layout_.node_weight[k]; ++j) set_one(layout_.node_column[k] + j);
   }
@@ -138,8 +149,8 @@ void NumericFactor<T>::assemble_node(const FactorSource& source, const Front& fr
       continue;
     }
     for (Index i = 0; i < other_dim; ++i) {
-      T* to = i < place.rows_in_slab ? column + place.offset + i
-                                     : column + front.shape.panel_offset((place.row + i) / r) + (place.row + i) % r;
+      T* to =
+          i < place.rows_in_slab ? column + place.offset + i : column + front.shape.panel_offset((place.row + i) / r) + (place.row + i) % r;
       for (Index j = 0; j < dim && (!is_diagonal || j <= i); ++j) to[j * r] = static_cast<T>(block[j * width + i]);
     }
   }

@@ -31,8 +31,8 @@ struct FactorSource {
   bool pattern_is_analyzed;  // A has the analysed pattern itself; else one that fits it, and blocks are searched
 };
 
-// Right-hand sides and solutions: the node at place k of the order has its unknowns from start[k] on. With a basis these are all three; Q is applied on
-// the way in and out.
+// Right-hand sides and solutions: the node at place k of the order has its unknowns from start[k] on. With a basis these are all three; Q
+// is applied on the way in and out.
 struct FactorVectors {
   std::span<const Index> start;
   double scale = 1.0;  // multiplies what comes in and divides what goes out: keeps single precision in range
@@ -43,8 +43,8 @@ class NumericFactor {
  public:
   NumericFactor(const SupernodeTree& tree, const AnalyzedGraph& graph, const FrontKernels<T>& kernels = front_kernels<T>());
 
-  // The pattern of A has been checked against the analysis. Allocates when the number of threads has changed or more nodes than ever have a basis of
-  // their own, else nothing. With `b`, the forward solve is done on the way, while each front is in the cache.
+  // The pattern of A has been checked against the analysis. Allocates when the number of threads has changed or more nodes than ever have a
+  // basis of their own, else nothing. With `b`, the forward solve is done on the way, while each front is in the cache.
   Status factorize(const FactorSource& source, const FactorVectors& vectors, const double* b);
   // y = L⁻¹ P Qᵀ b
   void solve_forward(const FactorVectors& vectors, const double* b);
