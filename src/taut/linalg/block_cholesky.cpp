@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "taut/linalg/block_cholesky/elimination_order.h"
 #include "taut/linalg/block_cholesky/numeric_factor.h"
 #include "taut/linalg/vector_ops.h"
 
@@ -88,7 +89,7 @@ struct BlockCholesky::Implementation {
     double_factor = nullptr;
     try {
       graph = analyzed_graph(p, mask);
-      tree = make_supernode_tree(graph.graph, nested_dissection(graph.graph), graph.weight);
+      tree = make_supernode_tree(graph.graph, elimination_order(graph.graph, graph.weight), graph.weight);
       make_factor(precision != CholeskyPrecision::double_precision);
     } catch (const std::bad_alloc&) {
       return {Outcome::out_of_memory, "Cholesky (block), analysis: not enough memory"};
