@@ -12,12 +12,13 @@
 namespace taut {
 
 struct AnalyzedGraph {
-  NodeGraph graph;              // of the nodes with unknowns, numbered in A's order; neighbours ascending
-  std::vector<Index> block;     // per neighbour: which block of A it is ...
-  std::vector<Index> diagonal;  // ... and per node its diagonal block
-  std::vector<Index> node;      // the number of each in A
-  std::vector<Index> weight;    // its unknowns, at least 1
-  Index rows = 0;               // nodes of A
+  NodeGraph graph;               // of the nodes with unknowns, numbered in A's order; neighbours ascending
+  std::vector<Offset> value;     // per neighbour: where in A's values its block begins ...
+  std::vector<Offset> diagonal;  // ... and per node its diagonal block
+  std::vector<Index> width;      // per node: of its row of A
+  std::vector<Index> node;       // the number of each in A
+  std::vector<Index> weight;     // its unknowns, at least 1
+  Index rows = 0;                // nodes of A
 
   // Empty if a matrix of this pattern can be factorised with this analysis: the same nodes with at most as many unknowns, blocks only where
   // there were blocks. Else what is wrong.

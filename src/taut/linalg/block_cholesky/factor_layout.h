@@ -38,7 +38,7 @@ struct Front {
 // A block of A below or on the diagonal, in the column of a pivot node.
 struct BlockPlace {
   Index place = 0;         // of the other node in the order
-  Index source = 0;        // which block of the analysed matrix it is
+  Offset value = 0;        // where the block begins in the analysed matrix's values
   Index row = 0;           // the other node's first row in the front
   Index rows_in_slab = 0;  // how many of its rows are in the slab where it begins, or more
   Offset offset = 0;       // of its first row in the panel's first column
@@ -56,6 +56,7 @@ struct FactorLayout {
   std::vector<RowPiece> piece;
   std::vector<Index> node;         // per place in the order: the node of A
   std::vector<Index> node_weight;  // per place in the order: its unknowns
+  std::vector<Index> node_width;   // per place in the order: length of the node's row in the analysed matrix
   std::vector<Index> node_column;  // per place in the order: first column of the node in its front
   std::vector<Index> block_start;  // per place in the order, into block; nodes + 1
   std::vector<BlockPlace> block;

@@ -87,10 +87,10 @@ void NumericFactor<T>::eliminate(const FactorSource& source, Index s, bool share
 
 namespace {
 
-// Rows are taken in the order of elimination, from all over A.
-void prefetch_row(const BlockCsr& a, Index node) {
-  const double* end = a.values.data() + a.pattern->value_start[node + 1];
-  for (const double* p = a.values.data() + a.pattern->value_start[node]; p < end; p += 8) __builtin_prefetch(p);
+// Rows are taken in the order of elimination, from all over A. `diagonal` is somewhere in the row.
+void prefetch_row(const double* diagonal, Index width) {
+  for (Index r = 0; r < 3; ++r)
+    for (Index k = -width / 2; k < width / 2; k += 8) __builtin_prefetch(diagonal + r * width + k);
 }
 
 }  // namespace
@@ -100,7 +100,8 @@ void NumericFactor<T>::assemble(const FactorSource& source, const Front& front, 
   const Index r = front.shape.slab_rows;
   const auto set_one = [&](Index j) { panel[front.shape.panel_offset(j / r) + Offset{j} * r + j % r] = T(1); };
   for (Index k = front.first_node; k < front.last_node; ++k) {
-    if (k + 1 < static_cast<Index>(layout_.node.size())) prefetch_row(source.a, layout_.node[k + 1]);
+    if (k + 1 < static_cast<Index>(layout_.node.size()) && source.pattern_is_analyzed)
+      prefetch_row(source.a.values.data() + layout_.block[layout_.block_start[k + 1]].value, layout_.node_width[k + 1]);
     assemble_node(source, front, k, panel);
     for (Index j = dim_[k]; j < layout_.node_weight[k]; ++j) set_one(layout_.node_column[k] + j);
   }
@@ -117,21 +118,27 @@ void project(const Mat3* left, Index rows, const Mat3* right, Index columns, dou
   if (right) b.leftCols(columns) = (b * right->leftCols(columns)).eval();
 }
 
+// Where the block of two nodes begins in A's values, or -1; for a matrix that has not the analysed pattern itself.
+Offset find_block(const BlockPattern& p, Index node, Index other) {
+  const Index k = p.find(node, other);
+  return k < 0 ? -1 : p.value_start[node] + p.block_offset[k];
+}
+
 }  // namespace
 
 // Row `node` of A read across is the pivots' column read down.
 template <class T>
 void NumericFactor<T>::assemble_node(const FactorSource& source, const Front& front, Index k, T* panel) const {
   const BlockPattern& p = *source.a.pattern;
-  const Index node = layout_.node[k], dim = dim_[k], r = front.shape.slab_rows, row_length = p.width(node);
+  const Index node = layout_.node[k], dim = dim_[k], r = front.shape.slab_rows;
   if (dim == 0) return;
-  const double* values = source.a.values.data() + p.value_start[node];
+  const Index row_length = source.pattern_is_analyzed ? layout_.node_width[k] : p.width(node);
   T* column = panel + Offset{layout_.node_column[k]} * r;
   for (Index e = layout_.block_start[k]; e < layout_.block_start[k + 1]; ++e) {
     const BlockPlace& place = layout_.block[e];
-    const Index block_number = source.pattern_is_analyzed ? place.source : p.find(node, layout_.node[place.place]);
-    if (block_number < 0) continue;
-    const double* block = values + p.block_offset[block_number];
+    const Offset value = source.pattern_is_analyzed ? place.value : find_block(p, node, layout_.node[place.place]);
+    if (value < 0) continue;
+    const double* block = source.a.values.data() + value;
     Index width = row_length;
     const Index other_dim = dim_[place.place], basis = basis_of_[k], other_basis = basis_of_[place.place];
     double projected[9];
