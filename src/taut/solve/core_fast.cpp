@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "taut/base/parallel.h"
 #include "taut/base/timer.h"
 #include "taut/linalg/vector_ops.h"
 #include "taut/solve/full_space.h"
@@ -12,6 +13,32 @@
 #include "taut/solve/reduced_pcg.h"
 
 namespace taut {
+
+namespace {
+
+// The factor in single precision is looked at when convergence is slow, and taken for bad when it misjudges a direction's energy by this
+// share: then its rounding, not the springs outside the core, sets the number of iterations.
+constexpr int check_every = 8;
+constexpr double worst_quality = 0.3;
+
+// y = P x: the blocks of the mask.
+void multiply_masked(const BlockCsr& a, std::span<const std::uint8_t> mask, std::span<const double> x, std::span<double> y) {
+  const BlockPattern& p = *a.pattern;
+  parallel_for(p.rows(), 256, [&](Index begin, Index end) {
+    for (Index i = begin; i < end; ++i) {
+      const Index rows = p.dim(i), width = p.width(i);
+      for (Index r = 0; r < rows; ++r) y[p.dof_start[i] + r] = 0.0;
+      for (Index k = p.row_start[i]; k < p.row_start[i + 1]; ++k) {
+        if (!mask[k] && p.column[k] != i) continue;
+        const double* block = a.block(i, k);
+        for (Index r = 0; r < rows; ++r)
+          for (Index c = 0; c < p.dim(p.column[k]); ++c) y[p.dof_start[i] + r] += block[r * width + c] * x[p.column_dof[k] + c];
+      }
+    }
+  });
+}
+
+}  // namespace
 
 bool CoreFast::analyze_if_new(const LinearSystem& system, SolveSummary& summary) {
   const bool is_known = pattern_ == system.matrix->pattern &&
@@ -40,17 +67,15 @@ bool CoreFast::begin_in_double(const LinearSystem& system, SolveSummary& summary
   return factorize(CholeskyPrecision::double_precision, system, summary);
 }
 
-// Work of a factorisation in double precision (twice the time of its flops in single precision) over that of an iteration: two flops an
-// entry of the factor each way and of A, which move four and eight bytes and so take about four times their share of the arithmetic's
-// speed.
-int CoreFast::single_precision_limit(const BlockCsr& a) const {
-  const BlockCholeskyStatistics s = factor_.block_statistics();
-  const double iteration = 16.0 * s.factor_entries + 16.0 * static_cast<double>(a.values.size());
-  return 20 + static_cast<int>(2.0 * s.flops / std::max(1.0, iteration));
+// For the search direction c and w = P c: wᵀ P̃⁻¹ w / cᵀ w, which is 1 but for the factor's rounding. Takes q_ for w.
+double CoreFast::factor_quality(const BlockCsr& a) {
+  multiply_masked(a, mask_, c_, q_);
+  const double energy = dot(c_, q_);
+  return factor_.solve_forward(q_) / energy;
 }
 
-// Conjugate gradients for the residual in r_, from x on.
-KrylovResult CoreFast::iterate(const BlockCsr& a, std::span<double> x, int max_iterations) {
+// Conjugate gradients for the residual in r_, from x on; `done` iterations came before.
+KrylovResult CoreFast::iterate(const BlockCsr& a, std::span<double> x, int done, int max_iterations, bool watch_factor) {
   KrylovResult result;
   const double limit = options_.tolerance * options_.tolerance * delta0_;
   const auto relative = [&](double d) { return std::sqrt(std::abs(d / delta0_)); };
@@ -65,10 +90,21 @@ KrylovResult CoreFast::iterate(const BlockCsr& a, std::span<double> x, int max_i
       break;
     }
     step_along(delta / curvature, c_, q_, x, r_);
+    if (watch_factor && result.iterations % check_every == check_every - 1) {
+      const double quality = factor_quality(a);
+      if (!(std::abs(quality - 1.0) < worst_quality)) {
+        result.iterations += 1;
+        result.stop_value = relative(delta);
+        result.status = {Outcome::breakdown,
+                         fmt::format("after {} iterations the factor in single precision is wrong by {:.2g} along the search direction",
+                                     result.iterations, quality - 1.0)};
+        return result;
+      }
+    }
     previous = delta;
     delta = factor_.solve_forward(r_);
     ++result.iterations;
-    if (observer) observer(result.iterations, relative(delta), x);
+    if (observer) observer(done + result.iterations, relative(delta), x);
   }
   result.stop_value = relative(delta);
   if (!std::isfinite(delta)) {
@@ -110,7 +146,7 @@ void CoreFast::run(const LinearSystem& system, std::span<double> x, SolveSummary
     from_rest.guess = {};
     initial_guess(from_rest, x);
   } else {
-    result = iterate(a, x, in_single ? std::min(limit, single_precision_limit(a)) : limit);
+    result = iterate(a, x, 0, limit, in_single);
   }
   summary.solve_ms = timer.lap();
   const int done = result.iterations;
@@ -121,7 +157,7 @@ void CoreFast::run(const LinearSystem& system, std::span<double> x, SolveSummary
     if (!begin_in_double(system, summary)) return;
     summary.factor_ms += timer.lap();
     residual();
-    result = iterate(a, x, limit - done);
+    result = iterate(a, x, done, limit - done, false);
     result.iterations += done;
     result.start_value = first.start_value;
     summary.solve_ms += timer.lap();
