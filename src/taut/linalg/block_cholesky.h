@@ -2,9 +2,9 @@
 // Taut's own sparse Cholesky factorisation P A Pᵀ = L Lᵀ for matrices made of small blocks, one per node (cloth: 3x3; scalar matrices:
 // 1x1).
 //
-//   analyze     nested dissection of the node graph (linalg/node_ordering.h), elimination tree, supernodes, all memory planned: once per
-//   topology factorize   multifrontal, dense SIMD kernels chosen for the machine, parallel over the tree and inside its upper fronts solve
-//   forward and backward, double vectors in and out whatever the precision of L; x = A⁻¹ b up to that precision
+//   analyze     nested dissection of the node graph, elimination tree, supernodes, all memory planned: once per topology
+//   factorize   multifrontal, dense SIMD kernels chosen for the machine, parallel over the tree and inside its upper fronts
+//   solve       forward and backward, double vectors in and out whatever the precision of L; x = A⁻¹ b up to that precision
 //
 // Constraints come and go, the analysis stays: after analyze(pattern), factorize(A) takes any matrix whose nodes are those of the pattern
 // with the same or fewer unknowns each (3, 2, 1 or 0) and whose blocks are among the pattern's; blocks may be missing. Missing unknowns are
@@ -12,8 +12,8 @@
 //
 // Without copies: factorize(A, basis) takes the analysed blocks of Qᵀ A Q (linalg/node_basis.h) straight from A, and
 //
-//   solve_forward    y = L⁻¹ P Qᵀ b, returns yᵀy = bᵀ Q (analysed part of Qᵀ A Q)⁻¹ Qᵀ b, the square of b's norm that conjugate gradients
-//   stop by solve_backward   x = beta x + Q Pᵀ L⁻ᵀ y
+//   solve_forward    y = L⁻¹ P Qᵀ b; returns yᵀy, which is rᵀ M⁻¹ r of conjugate gradients preconditioned by that part, for r = b
+//   solve_backward   x = beta x + Q Pᵀ L⁻ᵀ y
 //
 // have A's unknowns on both sides. With a mask in analyze, those blocks are a part of A (the matrix core): A itself is never taken apart.
 // The first forward solve costs next to nothing when factorize does it on the way.
