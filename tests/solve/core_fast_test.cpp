@@ -51,40 +51,44 @@ TEST(CoreFast, KeepsItsAnalysisWhileConstraintsChange) {
 TEST(CoreFast, FallsBackToDoubleWhenSingleOverflows) {
   Random random(3);
   ConstrainedCase c = random_case(random, {});
-  for (double& value : c.a.values) value *= 1e100;
+  const Eigen::VectorXd expected = c.solution();
+  for (auto* values : {&c.a.values, &c.b})
+    for (double& value : *values) value *= 1e100;
   std::vector<double> x(c.b.size());
   const SolveSummary summary = make_solver(solver_options("core_fast", 1e-8))->solve(c.system(), x);
   ASSERT_TRUE(summary.status.ok()) << summary.status.message;
   EXPECT_STREQ(summary.precision, "double");
   EXPECT_EQ(summary.fallbacks, 1);
   EXPECT_FALSE(summary.remark.empty());
-  EXPECT_LT(relative_difference(x, c.solution()), 1e-6);
+  EXPECT_LT(relative_difference(x, expected), 1e-6);
 }
 
-// A stiff chain whose core, the whole matrix, has a condition number beyond single precision: pivots may stay positive, but the
-// preconditioner is far off and conjugate gradients would not end.
-TEST(CoreFast, FallsBackToDoubleWhenSingleDoesNotConverge) {
+// Many stiff chains whose rigid motions only the masses hold: rounded to single precision the core loses these masses, so that a pivot
+// fails or each chain's rigid motion gets an energy of its own, by chance.
+TEST(CoreFast, FallsBackToDoubleWhereSinglePrecisionLosesTheMasses) {
   Random random(4);
-  for (const double stiffness : {1e8, 1e10, 1e12}) {
-    ConstrainedCase c;
-    const Index nodes = 400;
-    c.a = BlockCsr(make_pattern(random_graph(random, nodes, 0, 1), 3));
-    for_each_entry(c.a, [&](Index row, Index column, double& value) {
-      if (row == column) {
-        value = 1.0 + (row < 3 || row >= 3 * (nodes - 1) ? 1.0 : 2.0) * stiffness;
-      } else if (row % 3 == column % 3) {
-        value = -stiffness;
-      }
-    });
-    c.b = random.vector(3 * nodes), c.z.assign(c.b.size(), 0.0);
-    c.constraints.reset(nodes);
-    c.core.assign(static_cast<std::size_t>(c.a.pattern->blocks()), 1);
-    std::vector<double> x(c.b.size());
-    const SolveSummary summary = make_solver(solver_options("core_fast", 1e-6))->solve(c.system(), x);
-    ASSERT_TRUE(summary.status.ok()) << summary.status.message;
-    EXPECT_LT(summary.stop_value, 1e-6);
-    EXPECT_TRUE(summary.fallbacks == 1 || stiffness < 1e10) << stiffness;
-  }
+  constexpr Index nodes = 400, length = 5;
+  ConstrainedCase c;
+  std::vector<std::vector<Index>> links(nodes);
+  for (Index i = 0; i + 1 < nodes; ++i)
+    if (i % length != length - 1) links[i].push_back(i + 1), links[i + 1].push_back(i);
+  c.a = BlockCsr(make_pattern(links, 3));
+  for_each_entry(c.a, [&](Index row, Index column, double& value) {
+    const Index i = row / 3;
+    const double stiffness = 1e9 * (1.0 + 0.37 * (i / length));
+    if (row == column) value = 1.0 + stiffness * (i % length == 0 || i % length == length - 1 ? 1.0 : 2.0);
+    if (row != column && row % 3 == column % 3) value = -stiffness;
+  });
+  c.b = random.vector(3 * nodes), c.z.assign(c.b.size(), 0.0);
+  c.constraints.reset(nodes);
+  c.core.assign(static_cast<std::size_t>(c.a.pattern->blocks()), 1);
+  std::vector<double> x(c.b.size());
+  const SolveSummary summary = make_solver(solver_options("core_fast", 1e-6))->solve(c.system(), x);
+  ASSERT_TRUE(summary.status.ok()) << summary.status.message;
+  EXPECT_LT(summary.stop_value, 1e-6);
+  EXPECT_EQ(summary.fallbacks, 1);
+  EXPECT_STREQ(summary.precision, "double");
+  EXPECT_LT(summary.iterations, 30);
 }
 
 TEST(CoreFast, NothingToDo) {
