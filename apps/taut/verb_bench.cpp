@@ -2,6 +2,7 @@
 
 #include "bench/benches.h"
 #include "taut/base/error.h"
+#include "taut/base/file.h"
 #include "taut/base/parallel.h"
 #include "taut/linalg/sparse_cholesky.h"
 #include "verbs.h"
@@ -31,6 +32,25 @@ int run_bench(BenchFunction bench, const BenchArguments& arguments) {
   return 0;
 }
 
+void add_roofline(CLI::App& parent, int& exit_code) {
+  CLI::App* verb = parent.add_subcommand("roofline", "Each phase of a step against this machine's measured peak and bandwidth");
+  auto arguments = std::make_shared<BenchArguments>();
+  verb->add_option("--json", arguments->json, "Write the figures to this file");
+  verb->add_option("--threads", arguments->threads, "Threads (default 1)")->check(CLI::Range(1, 1024));
+  verb->add_option("--nodes", arguments->options.nodes, "Sizes: 1681, 6561, 25921 (default: these), 103041, 263169")
+      ->check(CLI::IsMember({1681, 6561, 25921, 103041, 263169}));
+  verb->add_option("--scenes", arguments->options.scenes, "Folder of the scene files (default: scenes)");
+  verb->footer("Example: taut bench roofline --nodes 25921 --threads 2 --json out/roofline.json");
+  verb->callback([=, &exit_code] {
+    set_thread_count(arguments->threads);
+    const MachineFacts machine = machine_facts(true);
+    fmt::print("{}\n", to_line(machine));
+    const nlohmann::ordered_json figures = bench_roofline(arguments->options, machine);
+    if (!arguments->json.empty()) write_file(arguments->json, figures.dump(2) + "\n");
+    exit_code = 0;
+  });
+}
+
 CLI::App* add_bench(CLI::App& parent, const char* name, const char* description, BenchFunction bench, int& exit_code) {
   CLI::App* verb = parent.add_subcommand(name, description);
   auto arguments = std::make_shared<BenchArguments>();
@@ -55,6 +75,7 @@ void add_bench_verb(CLI::App& app, int& exit_code) {
   verb->footer("Example: taut bench table2 --nodes 6561");
   add_bench(*verb, "table1", "Paper, Table 1: MPCG against uPCG, pinned and draping cloth", bench_table1, exit_code);
   add_bench(*verb, "table2", "Paper, Table 2: MPCG, CHOLMOD, PARDISO and corePCG on a sheet hit by a ball", bench_table2, exit_code);
+  add_roofline(*verb, exit_code);
 }
 
 }  // namespace taut::app

@@ -5,6 +5,7 @@
 #include "linalg/random_matrix.h"
 #include "taut/base/parallel.h"
 #include "taut/linalg/bicgstab.h"
+#include "taut/linalg/block_cholesky.h"
 #include "taut/linalg/eigen_cholesky.h"
 #include "taut/linalg/pcg.h"
 #include "taut/linalg/vector_ops.h"
@@ -104,6 +105,38 @@ TEST_F(Determinism, DirectSolves) {
     EXPECT_TRUE(cholesky.analyze(a).ok() && cholesky.factorize(a).ok() && cholesky.solve(b, x).ok());
     return x;
   });
+}
+
+// A square grid, whose upper fronts are large enough to be shared between threads.
+BlockCsr grid_spd(Random& random, Index side) {
+  std::vector<std::vector<Index>> columns;
+  for (Index i = 0; i < side * side; ++i) {
+    columns.emplace_back();
+    if (i % side > 0) columns.back().push_back(i - 1);
+    if (i % side < side - 1) columns.back().push_back(i + 1);
+    if (i >= side) columns.back().push_back(i - side);
+    if (i < side * (side - 1)) columns.back().push_back(i + side);
+  }
+  return random_spd(random, make_pattern(columns, 3), 0.02);
+}
+
+TEST_F(Determinism, BlockCholesky) {
+  const BlockCsr a = grid_spd(random_, 110);
+  const std::vector<double> b = random_.vector(a.dofs());
+  for (const auto precision : {CholeskyPrecision::double_precision, CholeskyPrecision::single_precision}) {
+    // One analysis serves all: the plan of the tasks follows the number of threads.
+    taut::BlockCholesky cholesky(precision);
+    ASSERT_TRUE(cholesky.analyze(a.pattern, {}).ok());
+    expect_same_bits([&] {
+      std::vector<double> x(b.size());
+      double norm2 = 0.0;
+      EXPECT_TRUE(cholesky.factorize(a, {}, b, &norm2).ok());
+      EXPECT_EQ(cholesky.solve_forward(b), norm2);
+      cholesky.solve_backward(0.0, x);
+      x.push_back(norm2);
+      return x;
+    });
+  }
 }
 
 }  // namespace

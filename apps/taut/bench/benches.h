@@ -22,4 +22,14 @@ std::vector<ReportRow> bench_table1(const BenchOptions& options);
 // Paper, Table 2: a ball hits a sheet; MPCG, CHOLMOD, PARDISO (where built in) and corePCG for three sizes and stiffnesses, semi-implicit Euler and IMEX matrices.
 std::vector<ReportRow> bench_table2(const BenchOptions& options);
 
+// One phase of a step, measured alone.
+struct RooflineRow {
+  Index nodes = 0;
+  std::string phase, precision;
+  double flops = 0.0, bytes = 0.0;  // 0: not counted
+  double milliseconds = 0.0;
+};
+// Each phase's rate against what the machine can do at best. `options.nodes`: 1681, 6561, 25921, 103041 or 263169; empty: the first three.
+nlohmann::ordered_json bench_roofline(const BenchOptions& options, const MachineFacts& machine);
+
 }  // namespace taut::app

@@ -38,6 +38,8 @@ struct Cell {
   double spmv_ms = 0.0;
   double nonzeros = 0.0;         // of the (reduced) matrix
   int failures = 0;
+  std::string precision = "double";  // of the last step
+  int fallbacks = 0;             // from single to double precision, all steps
   int factorisations = 0;        // pardiso_cgs: steps in which CG on the kept factor was not possible, or given up
   Index unknowns = 0, held_nodes = 0;
 };

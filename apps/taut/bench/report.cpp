@@ -27,7 +27,8 @@ nlohmann::ordered_json to_json(const ReportRow& row, int threads) {
   json["memory_MB"] = c.memory_MB;
   if (c.bound_iterations >= 0.0) json["bound_iterations"] = c.bound_iterations;
   json["spmv_ms"] = c.spmv_ms;
-  json["precision"] = "double";
+  json["precision"] = c.precision;
+  json["fallbacks"] = c.fallbacks;
   json["steps"] = c.steps;
   json["failures"] = c.failures;
   if (c.method.solver == "pardiso_cgs") json["factorisations"] = c.factorisations;

@@ -38,7 +38,8 @@ Json row_json(const SolverRow& row, const Json& facts, double reference_ms) {
   if (row.anorm_error >= 0.0) put_finite(json, "anorm_error", row.anorm_error);
   put_finite(json, "relative_residual", s.relative_residual);
   json["memory_MB"] = s.memory_bytes / 1e6;
-  json["precision"] = "double";
+  json["precision"] = s.precision;
+  if (s.fallbacks > 0) json["fallbacks"] = s.fallbacks;
   return json;
 }
 

@@ -45,14 +45,17 @@ class ConstraintSet {
   void constrain(Index node, const Vec3& n, double distance);
   // d = displacement (m).
   void fix(Index node, const Vec3& displacement);
-  // A node whose U_i is known already (read from a file): the first `ndof` columns of the rotation `frame`. d = 0. With ndof 3 or 0 the frame is I.
+  // A node whose U_i is known already (read from a file): the first `ndof` columns of the rotation `frame`. d = 0. With ndof 3 or 0 the
+  // frame is I.
   void set_frame(Index node, int ndof, const Mat3& frame);
 
   Index nodes() const { return static_cast<Index>(ndof_.size()); }
   int ndof(Index i) const { return ndof_[i]; }
   std::span<const std::int8_t> ndofs() const { return ndof_; }
-  // Columns of U_i: the first ndof(i) columns of this matrix; the others complete it to an orthogonal matrix and span the constrained directions.
+  // Columns of U_i: the first ndof(i) columns of this matrix; the others complete it to an orthogonal matrix and span the constrained
+  // directions.
   const Mat3& frame(Index i) const { return frame_[i]; }
+  std::span<const Mat3> frames() const { return frame_; }
   const Vec3& displacement(Index i) const { return displacement_[i]; }
   // S_i, exactly I or 0 for ndof 3 or 0.
   Mat3 projection(Index i) const;

@@ -1,8 +1,12 @@
 #include "taut/linalg/block_cholesky.h"
 
+#include <algorithm>
 #include <cassert>
+#include <cmath>
 
+#include "taut/linalg/block_cholesky/elimination_order.h"
 #include "taut/linalg/block_cholesky/numeric_factor.h"
+#include "taut/linalg/vector_ops.h"
 
 namespace taut {
 
@@ -15,8 +19,10 @@ struct BlockCholesky::Implementation {
   bool single = false;  // which of them holds the factor
   int fallbacks = 0;
 
+  std::shared_ptr<const BlockPattern> analyzed;  // null if the analysis was given no owner
   // Of the matrix last factorised:
   std::shared_ptr<const BlockPattern> pattern;
+  double scale = 1.0;                 // of the last forward solve
   std::vector<Index> start;           // per place in the order: first unknown in A's numbering ...
   std::vector<Index> permuted_start;  // ... and in the factor's
   std::vector<Index> permutation;
@@ -39,11 +45,64 @@ struct BlockCholesky::Implementation {
     return single ? f(*single_factor) : f(*double_factor);
   }
 
-  Status factorize_in(bool in_single, const BlockCsr& a) {
+  void make_factor(bool in_single) {
     single = in_single;
     if (single && !single_factor) single_factor = std::make_unique<NumericFactor<float>>(tree, graph);
     if (!single && !double_factor) double_factor = std::make_unique<NumericFactor<double>>(tree, graph);
-    return with_factor([&](auto& factor) { return factor.factorize(a); });
+  }
+
+  // Single precision sees vectors whose largest entry is about 1: what is left of a residual may be far below its range.
+  FactorVectors scaled(std::span<const double> b) {
+    scale = 1.0;
+    const double largest = single ? largest_magnitude(b) : 0.0;
+    if (largest > 0.0 && std::isfinite(largest)) scale = std::ldexp(1.0, -std::clamp(std::ilogb(largest), -1000, 1000));
+    return {start, scale};
+  }
+
+  double forward_norm2() {
+    return with_factor([&](auto& factor) { return factor.forward_norm2(); }) / (scale * scale);
+  }
+
+  Status factorize_in(bool in_single, const FactorSource& source, std::span<const double> b, double* b_norm2) {
+    make_factor(in_single);
+    const FactorVectors vectors = scaled(b);
+    const Status status = with_factor([&](auto& factor) { return factor.factorize(source, vectors, b.empty() ? nullptr : b.data()); });
+    if (b_norm2 && status.ok()) *b_norm2 = forward_norm2();
+    return status;
+  }
+
+  Status factorize(const FactorSource& source, std::span<const double> b, double* b_norm2) {
+    try {
+      Status status = factorize_in(precision != CholeskyPrecision::double_precision, source, b, b_norm2);
+      if (status.ok() || precision != CholeskyPrecision::automatic) return status;
+      ++fallbacks;
+      return factorize_in(false, source, b, b_norm2);
+    } catch (const std::bad_alloc&) {
+      return {Outcome::out_of_memory, "Cholesky (block), factorisation: not enough memory"};
+    }
+  }
+
+  Status analyze(const BlockPattern& p, std::span<const std::uint8_t> mask) {
+    pattern = nullptr;
+    analyzed = nullptr;
+    single_factor = nullptr;
+    double_factor = nullptr;
+    try {
+      graph = analyzed_graph(p, mask);
+      tree = make_supernode_tree(graph.graph, elimination_order(graph.graph, graph.weight), graph.weight);
+      make_factor(precision != CholeskyPrecision::double_precision);
+    } catch (const std::bad_alloc&) {
+      return {Outcome::out_of_memory, "Cholesky (block), analysis: not enough memory"};
+    }
+    number_unknowns(p);
+    return {};
+  }
+
+  void solve(std::span<const Index> numbering, std::span<const double> b, std::span<double> x) {
+    with_factor([&](auto& factor) {
+      factor.solve_forward({numbering}, b.data());
+      factor.solve_backward({numbering}, 0.0, x.data());
+    });
   }
 };
 
@@ -65,31 +124,16 @@ std::string BlockCholesky::name() const {
   }
 }
 
-Status BlockCholesky::analyze(const BlockCsr& a) {
-  const Status status = analyze(*a.pattern);
-  implementation_->pattern = a.pattern;
-  return status;
-}
+void BlockCholesky::set_precision(CholeskyPrecision precision) { implementation_->precision = precision; }
 
-Status BlockCholesky::analyze(const BlockPattern& pattern) {
-  Implementation& me = *implementation_;
-  me.pattern = nullptr;
-  me.single_factor = nullptr;
-  me.double_factor = nullptr;
-  try {
-    me.graph = analyzed_graph(pattern);
-    me.tree = make_supernode_tree(me.graph.graph, nested_dissection(me.graph.graph), me.graph.weight);
-    me.single = me.precision != CholeskyPrecision::double_precision;
-    if (me.single) {
-      me.single_factor = std::make_unique<NumericFactor<float>>(me.tree, me.graph);
-    } else {
-      me.double_factor = std::make_unique<NumericFactor<double>>(me.tree, me.graph);
-    }
-  } catch (const std::bad_alloc&) {
-    return {Outcome::out_of_memory, "Cholesky (block), analysis: not enough memory"};
-  }
-  me.number_unknowns(pattern);
-  return {};
+Status BlockCholesky::analyze(const BlockCsr& a) { return analyze(a.pattern, {}); }
+
+Status BlockCholesky::analyze(const BlockPattern& pattern) { return implementation_->analyze(pattern, {}); }
+
+Status BlockCholesky::analyze(std::shared_ptr<const BlockPattern> pattern, std::span<const std::uint8_t> mask) {
+  const Status status = implementation_->analyze(*pattern, mask);
+  implementation_->pattern = implementation_->analyzed = std::move(pattern);
+  return status;
 }
 
 Status BlockCholesky::factorize(const BlockCsr& a) {
@@ -101,25 +145,39 @@ Status BlockCholesky::factorize(const BlockCsr& a) {
     me.number_unknowns(*a.pattern);
     me.pattern = a.pattern;
   }
-  try {
-    Status status = me.factorize_in(me.precision != CholeskyPrecision::double_precision, a);
-    if (status.ok() || me.precision != CholeskyPrecision::automatic) return status;
-    ++me.fallbacks;
-    return me.factorize_in(false, a);
-  } catch (const std::bad_alloc&) {
-    return {Outcome::out_of_memory, "Cholesky (block), factorisation: not enough memory"};
-  }
+  return me.factorize({a, {}, a.pattern == me.analyzed}, {}, nullptr);
+}
+
+Status BlockCholesky::factorize(const BlockCsr& a, const NodeBasis& basis, std::span<const double> b, double* b_norm2) {
+  Implementation& me = *implementation_;
+  assert(a.pattern == me.analyzed);
+  assert(basis.dim.empty() || (a.pattern->uniform_dim == 3 && static_cast<Index>(basis.dim.size()) == a.rows()));
+  if (me.pattern != a.pattern) me.number_unknowns(*a.pattern);
+  me.pattern = a.pattern;
+  return me.factorize({a, basis, true}, b, b_norm2);
+}
+
+double BlockCholesky::solve_forward(std::span<const double> b) {
+  Implementation& me = *implementation_;
+  const FactorVectors vectors = me.scaled(b);
+  me.with_factor([&](auto& factor) { factor.solve_forward(vectors, b.data()); });
+  return me.forward_norm2();
+}
+
+void BlockCholesky::solve_backward(double beta, std::span<double> x) {
+  Implementation& me = *implementation_;
+  me.with_factor([&](auto& factor) { factor.solve_backward({me.start, me.scale}, beta, x.data()); });
 }
 
 Status BlockCholesky::solve(std::span<const double> b, std::span<double> x) {
-  implementation_->with_factor([&](auto& factor) { factor.solve(implementation_->start, b, x); });
+  implementation_->solve(implementation_->start, b, x);
   return {};
 }
 
 std::span<const Index> BlockCholesky::permutation() const { return implementation_->permutation; }
 
 Status BlockCholesky::solve_permuted(std::span<const double> b, std::span<double> x) {
-  implementation_->with_factor([&](auto& factor) { factor.solve(implementation_->permuted_start, b, x); });
+  implementation_->solve(implementation_->permuted_start, b, x);
   return {};
 }
 

@@ -2,13 +2,21 @@
 // Taut's own sparse Cholesky factorisation P A Pᵀ = L Lᵀ for matrices made of small blocks, one per node (cloth: 3x3; scalar matrices:
 // 1x1).
 //
-//   analyze     nested dissection of the node graph (linalg/node_ordering.h), elimination tree, supernodes, all memory planned: once per
-//   topology factorize   multifrontal, dense SIMD kernels chosen for the machine, parallel over the tree and inside its upper fronts solve
-//   forward and backward, double vectors in and out whatever the precision of L; x = A⁻¹ b up to that precision
+//   analyze     nested dissection of the node graph, elimination tree, supernodes, all memory planned: once per topology
+//   factorize   multifrontal, dense SIMD kernels chosen for the machine, parallel over the tree and inside its upper fronts
+//   solve       forward and backward, double vectors in and out whatever the precision of L; x = A⁻¹ b up to that precision
 //
 // Constraints come and go, the analysis stays: after analyze(pattern), factorize(A) takes any matrix whose nodes are those of the pattern
 // with the same or fewer unknowns each (3, 2, 1 or 0) and whose blocks are among the pattern's; blocks may be missing. Missing unknowns are
 // eliminated as the identity, so the cost is that of the full pattern. b and x are numbered as the unknowns of that A.
+//
+// Without copies: factorize(A, basis) takes the analysed blocks of Qᵀ A Q (linalg/node_basis.h) straight from A, and
+//
+//   solve_forward    y = L⁻¹ P Qᵀ b; returns yᵀy, which is rᵀ M⁻¹ r of conjugate gradients preconditioned by that part, for r = b
+//   solve_backward   x = beta x + Q Pᵀ L⁻ᵀ y
+//
+// have A's unknowns on both sides. With a mask in analyze, those blocks are a part of A (the matrix core): A itself is never taken apart.
+// The first forward solve costs next to nothing when factorize does it on the way.
 //
 // Precision: `single` halves the memory that the solves read and doubles the speed of the arithmetic; meant for preconditioners.
 // `automatic` begins in single precision and factorises again in double precision when a pivot fails, which statistics count.
@@ -22,6 +30,7 @@
 // Sources: Liu 1992, SIAM Review 34 (multifrontal method); Davis 2006, Direct Methods for Sparse Linear Systems (trees, counts);
 // Karypis & Kumar 1998 (METIS).
 
+#include "taut/linalg/node_basis.h"
 #include "taut/linalg/sparse_cholesky.h"
 
 namespace taut {
@@ -46,9 +55,18 @@ class BlockCholesky : public SparseCholesky {
   ~BlockCholesky() override;
 
   std::string name() const override;  // "block", "block_single" or "block_automatic"
+  // Of the next factorisations; the analysis stays.
+  void set_precision(CholeskyPrecision precision);
   Status analyze(const BlockCsr& a) override;
   Status analyze(const BlockPattern& pattern);
+  // Only blocks whose byte of the mask is not 0, and the diagonal ones; an empty mask: all.
+  Status analyze(std::shared_ptr<const BlockPattern> pattern, std::span<const std::uint8_t> mask);
   Status factorize(const BlockCsr& a) override;
+  // The analysed blocks of Qᵀ A Q; A must have the analysed pattern (asserted). `basis` is not kept. b, if not empty: solve_forward(b) at
+  // once, whose result goes to *b_norm2.
+  Status factorize(const BlockCsr& a, const NodeBasis& basis, std::span<const double> b = {}, double* b_norm2 = nullptr);
+  double solve_forward(std::span<const double> b);
+  void solve_backward(double beta, std::span<double> x);
   Status solve(std::span<const double> b, std::span<double> x) override;
   // Of the matrix analysed, or of the matrix last factorised.
   std::span<const Index> permutation() const override;

@@ -8,7 +8,7 @@
 
 namespace taut {
 
-std::vector<Index> nested_dissection(const NodeGraph& graph) {
+std::vector<Index> nested_dissection(const NodeGraph& graph, int imbalance) {
   std::vector<Index> order(static_cast<std::size_t>(graph.nodes()));
   std::iota(order.begin(), order.end(), 0);
   if (graph.neighbour.empty()) return order;
@@ -19,6 +19,7 @@ std::vector<Index> nested_dissection(const NodeGraph& graph) {
   METIS_SetDefaultOptions(options);
   options[METIS_OPTION_NUMBERING] = 0;
   options[METIS_OPTION_SEED] = 1;
+  options[METIS_OPTION_UFACTOR] = imbalance;
   idx_t nodes = graph.nodes();
   std::vector<idx_t> start(graph.start.begin(), graph.start.end()), neighbour(graph.neighbour.begin(), graph.neighbour.end());
   std::vector<idx_t> from_place(order.size()), to_place(order.size());

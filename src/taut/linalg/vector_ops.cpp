@@ -35,6 +35,32 @@ TAUT_MULTIVERSION void multiply_each_kernel(const double* s, const double* r, do
   for (Index i = 0; i < n; ++i) z[i] = s[i] * r[i];
 }
 
+TAUT_MULTIVERSION double largest_kernel(const double* a, Index n) {
+  double largest = 0.0;
+#pragma omp simd reduction(max : largest)
+  for (Index i = 0; i < n; ++i) {
+    const double size = a[i] < 0.0 ? -a[i] : a[i];
+    largest = size > largest ? size : largest;
+  }
+  return largest;
+}
+
+TAUT_MULTIVERSION void step_kernel(double alpha, const double* p, const double* q, double* y, double* r, Index n) {
+#pragma omp simd
+  for (Index i = 0; i < n; ++i) {
+    y[i] += alpha * p[i];
+    r[i] -= alpha * q[i];
+  }
+}
+
+struct Largest {
+  double value = 0.0;
+  Largest& operator+=(const Largest& other) {
+    value = value < other.value ? other.value : value;
+    return *this;
+  }
+};
+
 }  // namespace
 
 double dot(std::span<const double> a, std::span<const double> b) {
@@ -67,6 +93,18 @@ void residual_from_product(std::span<const double> b, std::span<double> r) {
   parallel_for(static_cast<Index>(b.size()), entries_per_task, [&](Index begin, Index end) {
     for (Index i = begin; i < end; ++i) r[i] = b[i] - r[i];
   });
+}
+
+double largest_magnitude(std::span<const double> a) {
+  return ordered_sum<Largest>(static_cast<Index>(a.size()),
+                              [&](Index begin, Index end) { return Largest{largest_kernel(&a[begin], end - begin)}; })
+      .value;
+}
+
+void step_along(double alpha, std::span<const double> p, std::span<const double> q, std::span<double> y, std::span<double> r) {
+  assert(p.size() == q.size() && p.size() == y.size() && p.size() == r.size());
+  parallel_for(static_cast<Index>(p.size()), entries_per_task,
+               [&](Index begin, Index end) { step_kernel(alpha, &p[begin], &q[begin], &y[begin], &r[begin], end - begin); });
 }
 
 bool all_finite(std::span<const double> a) {

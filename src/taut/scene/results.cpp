@@ -120,12 +120,12 @@ StatsWriter::~StatsWriter() { std::fclose(file_); }
 void StatsWriter::write(const StepRecord& r, int frame) {
   const auto optional = [](auto value, auto nothing) { return value == nothing ? std::string() : std::to_string(value); };
   const std::string row = fmt::format(
-      "{},{:.9g},{},{},{},{},{},{},{},{},{:.3e},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.9g},{:.9g},{:.6g},,{},double,{},{},{},,{},{},{"
+      "{},{:.9g},{},{},{},{},{},{},{},{},{:.3e},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.9g},{:.9g},{:.6g},,{},{},{},{},{},,{},{},{"
       ":.3e},{}\n",
       r.step, r.time, frame, r.nodes, r.dof, r.constraints, r.contacts, r.solver, optional(r.core_springs, Index{0}), r.iterations,
       r.relative_residual, r.assemble_ms, r.order_ms, r.factor_ms, r.solve_ms, r.contact_ms, r.step_ms, r.kinetic_J, r.elastic_J,
-      r.max_stretch, optional(r.bound_iterations, -1), r.fallbacks, r.collapsed_springs, r.retries, r.contact_passes, r.contact_moved,
-      r.deepest_m, r.newton_iterations);
+      r.max_stretch, optional(r.bound_iterations, -1), r.precision, r.fallbacks, r.collapsed_springs, r.retries, r.contact_passes,
+      r.contact_moved, r.deepest_m, r.newton_iterations);
   // One write a row: a reader, or a crash, never sees half of one.
   if (std::fwrite(row.data(), 1, row.size(), file_) != row.size() || std::fflush(file_) != 0)
     throw InputError({path_.string()}, "cannot be written; is the disk full? The steps up to here are safe: `taut resume` goes on");

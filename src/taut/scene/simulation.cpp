@@ -21,6 +21,8 @@ SolverOptions fallback_options(const SolverOptions& options) {
   return direct;
 }
 
+bool has_core(const std::string& solver) { return solver.starts_with("core_pcg") || solver == "core_fast"; }
+
 }  // namespace
 
 Simulation::Simulation(Scene scene)
@@ -29,7 +31,7 @@ Simulation::Simulation(Scene scene)
       contact_(scene_.solids, cloth_.nodes(), scene_.contact),
       stepper_(cloth_.nodes(), cloth_.force_models(), cloth_.external(), scene_.time.integrator, scene_.solver, scene_.time.newton),
       state_(cloth_.start()),
-      has_core_(scene_.solver.name.starts_with("core_pcg")) {}
+      has_core_(has_core(scene_.solver.name)) {}
 
 void Simulation::restore(State state, ContactState contacts, int steps) {
   state_ = std::move(state);
@@ -157,12 +159,14 @@ SolveSummary Simulation::solve_or_fall_back(StepRecord& record) {
 void Simulation::note_solve(const SolveSummary& summary, double rho, StepRecord& record) const {
   record.solver = summary.solver;
   record.newton_iterations += stepper_.newton_iterations();
+  record.fallbacks += summary.fallbacks;
+  if (record.contact_passes == 0 || summary.precision == std::string_view("double")) record.precision = summary.precision;
   record.iterations = std::max(record.iterations, summary.iterations);
   record.relative_residual = std::max(record.relative_residual, summary.relative_residual);
   record.order_ms += summary.order_ms;
   record.factor_ms += summary.factor_ms;
   record.solve_ms += summary.solve_ms + summary.reduce_ms;
-  if (has_core_ && summary.solver.starts_with("core_pcg")) {
+  if (has_core_ && has_core(summary.solver)) {
     record.core_springs = stepper_.core_springs();
     record.bound_iterations = std::max(record.bound_iterations, core_iteration_bound(rho, summary.start_value, scene_.solver.tolerance));
   }

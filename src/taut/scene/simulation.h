@@ -32,6 +32,7 @@ struct StepRecord {
   double max_stretch = 0.0;   // largest L/L0 - 1 of all stretch springs
   int bound_iterations = -1;  // -1: the solver has no bound
   int fallbacks = 0;
+  std::string precision = "double";  // of the factor; of several passes the higher one
   Index collapsed_springs = 0;
   int contact_passes = 0;
   int newton_iterations = 0;  // linear solves beyond one a pass; nonlinear integrators

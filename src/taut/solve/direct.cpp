@@ -6,8 +6,10 @@
 
 namespace taut {
 
-Direct::Direct(SolverOptions options, const std::string& backend) : ConstrainedSolver(std::move(options)), cholesky_(make_cholesky(backend)) {
+Direct::Direct(SolverOptions options, const std::string& backend, AnalysisUse analysis)
+    : ConstrainedSolver(std::move(options)), cholesky_(make_cholesky(backend)) {
   assert(cholesky_);
+  if (analysis == AnalysisUse::kept) options_.reuse_analysis = true;
 }
 
 void Direct::run(const LinearSystem& system, std::span<double> x, SolveSummary& summary) {

@@ -7,10 +7,13 @@
 
 namespace taut {
 
+// kept: the analysis stays while the reduced pattern does, whatever SolverOptions::reuse_analysis says.
+enum class AnalysisUse { by_option, kept };
+
 class Direct : public ConstrainedSolver {
  public:
   // backend: a name known to make_cholesky(), which must be there (asserted).
-  Direct(SolverOptions options, const std::string& backend);
+  Direct(SolverOptions options, const std::string& backend, AnalysisUse analysis = AnalysisUse::by_option);
 
  protected:
   void run(const LinearSystem& system, std::span<double> x, SolveSummary& summary) override;

@@ -4,6 +4,7 @@
 
 #include "taut/constraint/reduction.h"
 #include "taut/linalg/vector_ops.h"
+#include "taut/solve/full_space.h"
 
 namespace taut {
 
@@ -21,10 +22,10 @@ double projected_residual_norm(const LinearSystem& system, std::span<const doubl
 }  // namespace
 
 double driving_norm(const LinearSystem& system) {
-  std::vector<double> prescribed(system.rhs.size(), 0.0);
-  if (system.constraints) prescribed.assign(system.z.begin(), system.z.end());
-  project_constrained(system.constraints, prescribed);
-  return projected_residual_norm(system, prescribed);
+  std::vector<double> load(system.rhs.size());
+  load_without_prescribed(system, load);
+  project_free(system.constraints, load);
+  return norm(load);
 }
 
 double relative_residual(const LinearSystem& system, std::span<const double> x) {

@@ -12,6 +12,8 @@
 #include "taut/constraint/reduction.h"
 #include "taut/linalg/sparse_cholesky.h"
 #include "taut/linalg/vector_ops.h"
+#include "taut/solve/block_direct.h"
+#include "taut/solve/core_fast.h"
 #include "taut/solve/core_pcg.h"
 #include "taut/solve/direct.h"
 #include "taut/solve/eq10.h"
@@ -57,9 +59,12 @@ const Entry entries[] = {
     {"eq10:block_diagonal", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<Eq10>(o, Eq10Preconditioner::block_diagonal); }, nullptr},
     {"eq10:ilu0", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<Eq10>(o, Eq10Preconditioner::ilu0); }, nullptr},
     {"cholmod", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<Direct>(o, "cholmod"); }, "cholmod"},
+    {"cholmod_reused_analysis", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<Direct>(o, "cholmod", AnalysisUse::kept); }, "cholmod"},
     {"pardiso", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<Direct>(o, "pardiso"); }, "pardiso"},
     {"pardiso_cgs", nullptr, "pardiso"},
     {"eigen_ldlt", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<Direct>(o, "eigen"); }, nullptr},
+    {"block_cholesky", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<BlockDirect>(o); }, nullptr},
+    {"core_fast", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<CoreFast>(o); }, nullptr},
     {"core_pcg", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<CorePcg>(o, ""); }, nullptr},
     {"core_pcg:cholmod", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<CorePcg>(o, "cholmod"); }, "cholmod"},
     {"core_pcg:eigen", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<CorePcg>(o, "eigen"); }, nullptr},

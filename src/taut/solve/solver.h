@@ -1,9 +1,9 @@
 #pragma once
 // Solvers of the constrained linear system, by name ("METHOD" or "METHOD:VARIANT"):
 //
-//   mpcg[:PRECONDITIONER]                modified PCG on (A, S, z): Baraff & Witkin 1998, as corrected by Ascher & Boxerman 2003   (paper Section 2)
-//   upcg[:PRECONDITIONER]                plain PCG on the reduced Ã                                                             (Section 3)
-//   ppcg[:PRECONDITIONER]                pre-filtered PCG on S A S + d (I-S): size and pattern of A kept (Tamstorf et al. 2015)
+//   mpcg[:PRECONDITIONER]                modified PCG on (A, S, z): Baraff & Witkin 1998, as corrected by Ascher & Boxerman 2003   (paper
+//   Section 2) upcg[:PRECONDITIONER]                plain PCG on the reduced Ã (Section 3) ppcg[:PRECONDITIONER] pre-filtered PCG on S A S
+//   + d (I-S): size and pattern of A kept (Tamstorf et al. 2015)
 //      diagonal, block_diagonal          of A, restricted to the free directions: mpcg and upcg then agree step by step
 //      projected_block_diagonal          the diagonal blocks of Ã (Boxerman & Ascher 2004); ppcg calls its own block_diagonal
 //      reduced_diagonal                  upcg: diag(Ã), which depends on the choice of U
@@ -11,13 +11,17 @@
 //      ssor                              symmetric Gauss-Seidel, or SolverOptions::ssor_omega (linalg/ssor.h)
 //      amg                               upcg, ppcg: smoothed aggregation with the rigid motions (linalg/smoothed_aggregation.h)
 //   eq10[:block_diagonal|:ilu0]          BiCGSTAB on S A + d (I-S), the paper's Eq. 10, which MATH.md shows to be equivalent after all
-//   cholmod, pardiso, eigen_ldlt         direct: sparse Cholesky of Ã                                                              (Section 4)
-//   pardiso_cgs                          PARDISO's own CG on the factor of an earlier step, its "Pardiso(2)"; library taut_pardiso       (Table 2)
-//   core_pcg[:cholmod|:eigen|:pardiso]   PCG on Ã, preconditioned by the factorised matrix core                                    (Section 6)
+//   cholmod, pardiso, eigen_ldlt         direct: sparse Cholesky of Ã                                                              (Section
+//   4) pardiso_cgs                          PARDISO's own CG on the factor of an earlier step, its "Pardiso(2)"; library taut_pardiso
+//   (Table 2) cholmod_reused_analysis              cholmod, its analysis kept while the reduced pattern stays, whatever the options say
+//   block_cholesky                       direct: Taut's own factorisation of Ã (linalg/block_cholesky.h)
+//   core_fast                            core_pcg's method on that factorisation, in single precision where it holds (solve/core_fast.h)
+//   core_pcg[:cholmod|:eigen|:pardiso]   PCG on Ã, preconditioned by the factorised matrix core                                    (Section
+//   6)
 //
-// d: a mass per node, the mean of A's diagonal there, so that kilograms are not added to pure numbers. Without :VARIANT the first one listed is meant;
-// core_pcg falls back from cholmod to eigen when CHOLMOD is not built in, and says so in the summary's remark.
-// A solver keeps memory and, where allowed, symbolic work between calls. One object, one thread at a time.
+// d: a mass per node, the mean of A's diagonal there, so that kilograms are not added to pure numbers. Without :VARIANT the first one
+// listed is meant; core_pcg falls back from cholmod to eigen when CHOLMOD is not built in, and says so in the summary's remark. A solver
+// keeps memory and, where allowed, symbolic work between calls. One object, one thread at a time.
 
 #include <functional>
 #include <memory>
@@ -32,8 +36,8 @@ class ConstrainedSolver {
  public:
   virtual ~ConstrainedSolver() = default;
 
-  // Solves and checks: fills x (3N) and returns what happened, with the true residual. Never throws for numerical reasons; when the status is not
-  // ok, x holds the best iterate, or S guess + (I-S) z if there is none.
+  // Solves and checks: fills x (3N) and returns what happened, with the true residual. Never throws for numerical reasons; when the status
+  // is not ok, x holds the best iterate, or S guess + (I-S) z if there is none.
   SolveSummary solve(const LinearSystem& system, std::span<double> x);
 
   // Called by iterative methods after each iteration with (iteration, stop value, x in full space); for histories. It slows the loop down.

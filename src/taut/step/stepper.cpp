@@ -21,6 +21,16 @@ std::vector<bool> implicit_models(const std::vector<const ForceModel*>& models, 
   return implicit;
 }
 
+// A's row of node i times u.
+Vec3 row_product(const BlockCsr& a, Index i, std::span<const Vec3> u) {
+  using Block = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>, 0, Eigen::OuterStride<>>;
+  const BlockPattern& p = *a.pattern;
+  Vec3 sum = Vec3::Zero();
+  for (Index k = p.row_start[i]; k < p.row_start[i + 1]; ++k)
+    sum += Block(a.block(i, k), Eigen::OuterStride<>(p.width(i))) * u[p.column[k]];
+  return sum;
+}
+
 }  // namespace
 
 Stepper::Stepper(Index nodes, std::vector<const ForceModel*> models, ExternalForces external, IntegratorKind integrator,
@@ -68,10 +78,12 @@ SolveSummary Stepper::solve(const ConstraintSet& constraints, std::span<const Ve
   if (integrator_->is_nonlinear() && summary.status.ok()) summary = solve_nonlinear(constraints, solver, std::move(summary));
   integrator_->finish(*state_, h_, unknown_, x_end_, v_end_);
 
-  multiply(*current_a_, flat(unknown_), flat(impulse_));
-  for (Index i = 0; i < constraints.nodes(); ++i)
-    impulse_[i] =
-        constraints.ndof(i) == 3 ? Vec3(Vec3::Zero()) : Vec3(constraints.constrained_part(i, impulse_[i] - rhs_[i]) / per_impulse);
+  parallel_for(constraints.nodes(), 1024, [&](Index begin, Index end) {
+    for (Index i = begin; i < end; ++i)
+      impulse_[i] = constraints.ndof(i) == 3
+                        ? Vec3(Vec3::Zero())
+                        : Vec3(constraints.constrained_part(i, row_product(*current_a_, i, unknown_) - rhs_[i]) / per_impulse);
+  });
   return summary;
 }
 

@@ -4,7 +4,7 @@
 
 namespace taut {
 
-AnalyzedGraph analyzed_graph(const BlockPattern& pattern) {
+AnalyzedGraph analyzed_graph(const BlockPattern& pattern, std::span<const std::uint8_t> mask) {
   AnalyzedGraph result;
   result.rows = pattern.rows();
   std::vector<Index> number(static_cast<std::size_t>(pattern.rows()), -1);
@@ -13,11 +13,17 @@ AnalyzedGraph analyzed_graph(const BlockPattern& pattern) {
       number[i] = static_cast<Index>(result.node.size());
       result.node.push_back(i);
       result.weight.push_back(pattern.dim(i));
+      result.diagonal.push_back(pattern.value_start[i] + pattern.block_offset[pattern.diagonal[i]]);
+      result.width.push_back(pattern.width(i));
     }
   result.graph.start.push_back(0);
   for (const Index i : result.node) {
-    for (Index k = pattern.row_start[i]; k < pattern.row_start[i + 1]; ++k)
-      if (const Index j = pattern.column[k]; j != i && number[j] >= 0) result.graph.neighbour.push_back(number[j]);
+    for (Index k = pattern.row_start[i]; k < pattern.row_start[i + 1]; ++k) {
+      const Index j = pattern.column[k];
+      if (j == i || number[j] < 0 || (!mask.empty() && !mask[k])) continue;
+      result.graph.neighbour.push_back(number[j]);
+      result.value.push_back(pattern.value_start[i] + pattern.block_offset[k]);
+    }
     result.graph.start.push_back(static_cast<Index>(result.graph.neighbour.size()));
   }
   return result;

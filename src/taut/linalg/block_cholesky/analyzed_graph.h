@@ -1,6 +1,8 @@
 #pragma once
 // The graph that was analysed: the nodes of A that have unknowns, and which of them share a block.
 
+#include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -10,16 +12,20 @@
 namespace taut {
 
 struct AnalyzedGraph {
-  NodeGraph graph;            // of the nodes with unknowns, numbered in A's order; neighbours ascending
-  std::vector<Index> node;    // the number of each in A
-  std::vector<Index> weight;  // its unknowns, at least 1
-  Index rows = 0;             // nodes of A
+  NodeGraph graph;               // of the nodes with unknowns, numbered in A's order; neighbours ascending
+  std::vector<Offset> value;     // per neighbour: where in A's values its block begins ...
+  std::vector<Offset> diagonal;  // ... and per node its diagonal block
+  std::vector<Index> width;      // per node: of its row of A
+  std::vector<Index> node;       // the number of each in A
+  std::vector<Index> weight;     // its unknowns, at least 1
+  Index rows = 0;                // nodes of A
 
   // Empty if a matrix of this pattern can be factorised with this analysis: the same nodes with at most as many unknowns, blocks only where
   // there were blocks. Else what is wrong.
   std::string mismatch(const BlockPattern& pattern) const;
 };
 
-AnalyzedGraph analyzed_graph(const BlockPattern& pattern);
+// mask: one byte per block of the pattern, 0 for blocks that are left out; empty: all are in. Diagonal blocks always are.
+AnalyzedGraph analyzed_graph(const BlockPattern& pattern, std::span<const std::uint8_t> mask = {});
 
 }  // namespace taut

@@ -1,7 +1,5 @@
 #include "taut/linalg/block_cholesky/factor_layout.h"
 
-#include <algorithm>
-
 #include "taut/linalg/block_cholesky/elimination_tree.h"
 
 namespace taut {
@@ -20,6 +18,7 @@ class LayoutBuilder {
     for (const Index i : tree_.order) {
       layout_.node.push_back(analyzed_.node[i]);
       layout_.node_weight.push_back(analyzed_.weight[i]);
+      layout_.node_width.push_back(analyzed_.width[i]);
     }
     link_children();
     place_ = inverse_permutation(tree_.order);
@@ -78,16 +77,16 @@ class LayoutBuilder {
     for (Index k = layout_.front[s].first_node; k < layout_.front[s].last_node; ++k) {
       const NodeGraph& graph = analyzed_.graph;
       const Index i = tree_.order[k];
-      const std::size_t begin = layout_.block.size();
-      layout_.block.push_back({analyzed_.node[i], row_of_[k]});
-      for (Index e = graph.start[i]; e < graph.start[i + 1]; ++e) {
-        const Index other = place_[graph.neighbour[e]];
-        if (other > k) layout_.block.push_back({analyzed_.node[graph.neighbour[e]], row_of_[other]});
-      }
-      std::sort(layout_.block.begin() + static_cast<std::ptrdiff_t>(begin), layout_.block.end(),
-                [](const BlockPlace& a, const BlockPlace& b) { return a.node < b.node; });
+      add_block(layout_.front[s].shape, k, analyzed_.diagonal[i]);
+      for (Index e = graph.start[i]; e < graph.start[i + 1]; ++e)
+        if (const Index other = place_[graph.neighbour[e]]; other > k) add_block(layout_.front[s].shape, other, analyzed_.value[e]);
       layout_.block_start.push_back(static_cast<Index>(layout_.block.size()));
     }
+  }
+
+  void add_block(const FrontShape& shape, Index place, Offset value) {
+    const Index row = row_of_[place], in_slab = row % slab_rows_;
+    layout_.block.push_back({place, value, row, slab_rows_ - in_slab, shape.panel_offset(row / slab_rows_) + in_slab});
   }
 
   // How the rows of child c lie in its parent s: runs, cut at the borders of slabs and at the end of the parent's pivots.
@@ -129,8 +128,8 @@ FactorLayout make_factor_layout(const SupernodeTree& tree, const AnalyzedGraph& 
 
 Offset FactorLayout::bytes() const {
   const auto size_of = [](const auto& v) { return static_cast<Offset>(v.size() * sizeof(v[0])); };
-  return size_of(front) + size_of(child) + size_of(piece) + size_of(node) + size_of(node_weight) + size_of(node_column) +
-         size_of(block_start) + size_of(block) + size_of(task);
+  return size_of(front) + size_of(child) + size_of(piece) + size_of(node) + size_of(node_weight) + size_of(node_width) +
+         size_of(node_column) + size_of(block_start) + size_of(block) + size_of(task);
 }
 
 }  // namespace taut

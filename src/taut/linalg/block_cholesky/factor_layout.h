@@ -35,9 +35,13 @@ struct Front {
   Offset panel = 0, update = 0, vector = 0;
 };
 
-// A block of A below or on the diagonal, in the column of a pivot node: node `node` of A is from row `row` on in the front.
+// A block of A below or on the diagonal, in the column of a pivot node.
 struct BlockPlace {
-  Index node = 0, row = 0;
+  Index place = 0;         // of the other node in the order
+  Offset value = 0;        // where the block begins in the analysed matrix's values
+  Index row = 0;           // the other node's first row in the front
+  Index rows_in_slab = 0;  // how many of its rows are in the slab where it begins, or more
+  Offset offset = 0;       // of its first row in the panel's first column
 };
 
 // Fronts begin ... end-1; `shared`: a single one, large enough for several threads.
@@ -52,9 +56,10 @@ struct FactorLayout {
   std::vector<RowPiece> piece;
   std::vector<Index> node;         // per place in the order: the node of A
   std::vector<Index> node_weight;  // per place in the order: its unknowns
+  std::vector<Index> node_width;   // per place in the order: length of the node's row in the analysed matrix
   std::vector<Index> node_column;  // per place in the order: first column of the node in its front
   std::vector<Index> block_start;  // per place in the order, into block; nodes + 1
-  std::vector<BlockPlace> block;   // per place ascending in `node`
+  std::vector<BlockPlace> block;
   std::vector<FrontTask> task;
   TaskTree task_tree;
   Offset panel_size = 0, update_size = 0, vector_size = 0;  // elements

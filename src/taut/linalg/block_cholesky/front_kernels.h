@@ -90,8 +90,4 @@ struct FrontKernels {
   void (*backward)(const FrontShape& shape, const T* panel, T* x);
 };
 
-// The kernels for this machine (x86-64-v4, x86-64-v3 or the plain build), chosen once.
-template <class T>
-const FrontKernels<T>& front_kernels();
-
 }  // namespace taut

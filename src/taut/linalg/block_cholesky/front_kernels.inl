@@ -1,6 +1,8 @@
 // The kernels of front_kernels.h. Included by one source per instruction set, which names its namespace in TAUT_KERNELS; the register block
 // follows from what the compiler may use. Nothing here may call an inline function of a library: see FrontShape.
 
+#include <utility>  // index_sequence only
+
 #include "taut/linalg/block_cholesky/front_kernels.h"
 
 namespace taut::TAUT_KERNELS {
@@ -12,7 +14,7 @@ using Int = std::int32_t;
 #if defined(__AVX512F__)
 constexpr Int register_bytes = 64, block_vectors = 2, group = 8;  // 16 of 32 registers
 #elif defined(__AVX2__)
-constexpr Int register_bytes = 32, block_vectors = 3, group = 4;  // 12 of 16
+constexpr Int register_bytes = 32, block_vectors = 2, group = 4;  // 8 of 16
 #else
 constexpr Int register_bytes = 16, block_vectors = 2, group = 4;  // 8 of 16
 #endif
@@ -358,38 +360,58 @@ void forward(const FrontShape& shape, const T* panel, T* x) {
   }
 }
 
-// sum[k] += slab column k times x, lane by lane.
+// sum[k] += slab column k times x, lane by lane. `count`: a multiple of `group`. From the last column to the first: backward() reads a whole factor
+// from its end to its begin, which the processor's prefetching can follow.
 template <class T>
 TAUT_INLINE void add_transposed_product(const T* slab, const T* x, Int count, Vector<T>* sum) {
   Vector<T> factor[block_vectors];
   for (Int i = 0; i < block_vectors; ++i) factor[i] = load(x + i * lanes<T>);
-  for (Int k = 0; k < count; ++k, slab += slab_rows<T>) {
-    Vector<T> s = sum[k];
-    for (Int i = 0; i < block_vectors; ++i) s += load(slab + i * lanes<T>) * factor[i];
-    sum[k] = s;
+  for (Int k = count - group; k >= 0; k -= group)
+#pragma GCC unroll 8
+    for (Int j = group - 1; j >= 0; --j) {
+      Vector<T> s = sum[k + j];
+#pragma GCC unroll 4
+      for (Int i = 0; i < block_vectors; ++i) s += load(slab + (k + j) * slab_rows<T> + i * lanes<T>) * factor[i];
+      sum[k + j] = s;
+    }
+}
+
+// Half of the lanes of two vectors seen as segments: of each segment its lower (Upper = 0) or upper (1) half.
+template <class T, Int Segment, Int Upper, std::size_t... I>
+TAUT_INLINE Vector<T> halves_of_segments(Vector<T> a, Vector<T> b, std::index_sequence<I...>) {
+  constexpr Int half = Segment / 2;
+  return __builtin_shufflevector(a, b, (static_cast<Int>(I) / half * Segment + Upper * half + static_cast<Int>(I) % half)...);
+}
+
+// x[k] -= the sum of v[k]'s lanes, for a group: a tree that halves the segments that belong to one k while it halves the number of vectors.
+template <class T, Int Segment = lanes<T>, Int Count = group>
+TAUT_INLINE void subtract_lane_sums(const Vector<T>* v, T* x) {
+  if constexpr (Segment == 1) {
+    for (Int k = 0; k < Count; ++k)
+      for (Int i = 0; i < lanes<T> && k * lanes<T> + i < group; ++i) x[k * lanes<T> + i] -= v[k][i];
+  } else {
+    constexpr Int left = (Count + 1) / 2;
+    constexpr auto all = std::make_index_sequence<lanes<T>>{};
+    Vector<T> next[left];
+    for (Int k = 0; k < left; ++k) {
+      const Vector<T> a = v[2 * k], b = v[2 * k + 1 < Count ? 2 * k + 1 : 2 * k];
+      next[k] = halves_of_segments<T, Segment, 0>(a, b, all) + halves_of_segments<T, Segment, 1>(a, b, all);
+    }
+    subtract_lane_sums<T, Segment / 2, left>(next, x);
   }
 }
 
+// x of the columns begin ... end-1 minus their products with the rows of the slabs slab_begin ... slab_end-1.
 template <class T>
-TAUT_INLINE T sum_of_lanes(Vector<T> v) {
-  T half[lanes<T>];
-  store(half, v);
-  for (Int width = lanes<T> / 2; width > 0; width /= 2)
-    for (Int i = 0; i < width; ++i) half[i] += half[i + width];
-  return half[0];
-}
-
-// x of the columns begin ... end-1 minus the products with all slabs from `slab_begin` on.
-template <class T>
-TAUT_INLINE void subtract_rows_below(const FrontShape& shape, const T* panel, T* x, Int slab_begin, Int begin, Int end) {
+TAUT_INLINE void subtract_rows_below(const FrontShape& shape, const T* panel, T* x, Int slab_begin, Int slab_end, Int begin, Int end) {
   constexpr Int chunk = 128;
+  Vector<T> sum[chunk];
   for (Int c = begin; c < end; c += chunk) {
     const Int count = end - c < chunk ? end - c : chunk;
-    Vector<T> sum[chunk];
     for (Int k = 0; k < count; ++k) sum[k] = Vector<T>{};
-    for (Int b = slab_begin; b < shape.slabs(); ++b)
+    for (Int b = slab_end - 1; b >= slab_begin; --b)
       add_transposed_product(panel + shape.panel_offset(b) + c * slab_rows<T>, x + b * slab_rows<T>, count, sum);
-    for (Int k = 0; k < count; ++k) x[c + k] -= sum_of_lanes<T>(sum[k]);
+    for (Int k = 0; k < count; k += group) subtract_lane_sums<T>(sum + k, x + c + k);
   }
 }
 
@@ -411,7 +433,7 @@ void backward(const FrontShape& shape, const T* panel, T* x) {
   constexpr Int r = slab_rows<T>;
   const Int last = (shape.columns - 1) / r;  // the last slab with pivots
   if (shape.columns == 0) return;
-  subtract_rows_below(shape, panel, x, last + 1, 0, shape.columns);
+  subtract_rows_below(shape, panel, x, last + 1, shape.slabs(), 0, shape.columns);
   for (Int b = last; b >= 0; --b) {
     const T* slab = panel + shape.panel_offset(b);
     const Int diagonal = r * b, stop = shape.panel_width(b);
@@ -419,24 +441,13 @@ void backward(const FrontShape& shape, const T* panel, T* x) {
     T y[r];
     for (Int i = 0; i < r; ++i) y[i] = diagonal + i < stop ? T(0) : x[diagonal + i];
     for (Int c = stop - group; c >= diagonal; c -= group) {
-      for (Int j = 0; j < group; ++j) {
-        Vector<T> sum{};
-        add_transposed_product<T>(slab + (c + j) * r, y, 1, &sum);
-        x[c + j] -= sum_of_lanes<T>(sum);
-      }
+      Vector<T> sum[group] = {};
+      add_transposed_product<T>(slab + c * r, y, group, sum);
+      subtract_lane_sums<T>(sum, x + c);
       backward_triangle(slab + c * r + c % r, x + c);
       for (Int j = 0; j < group; ++j) y[c % r + j] = x[c + j];
     }
-    if (diagonal > 0) {
-      constexpr Int chunk = 128;
-      for (Int c = 0; c < diagonal; c += chunk) {
-        const Int count = diagonal - c < chunk ? diagonal - c : chunk;
-        Vector<T> sum[chunk];
-        for (Int k = 0; k < count; ++k) sum[k] = Vector<T>{};
-        add_transposed_product(slab + c * r, x + diagonal, count, sum);
-        for (Int k = 0; k < count; ++k) x[c + k] -= sum_of_lanes<T>(sum[k]);
-      }
-    }
+    subtract_rows_below(shape, panel, x, b, b + 1, 0, diagonal);
   }
 }
 

@@ -10,13 +10,15 @@
 namespace taut {
 
 template <class T>
-NumericFactor<T>::NumericFactor(const SupernodeTree& tree, const AnalyzedGraph& graph)
-    : kernels_(front_kernels<T>()), layout_(make_factor_layout(tree, graph, kernels_.slab_rows, kernels_.column_group)) {
+NumericFactor<T>::NumericFactor(const SupernodeTree& tree, const AnalyzedGraph& graph, const FrontKernels<T>& kernels)
+    : kernels_(kernels), layout_(make_factor_layout(tree, graph, kernels_.slab_rows, kernels_.column_group)) {
   panels_ = AlignedArray<T>(layout_.panel_size);
   vectors_ = AlignedArray<T>(layout_.vector_size);
   fate_.resize(layout_.front.size());
   bad_pivot_.resize(layout_.front.size());
+  norm2_.resize(layout_.front.size());
   dim_.resize(layout_.node.size());
+  basis_of_.resize(layout_.node.size());
   plan();
 }
 
@@ -29,19 +31,36 @@ void NumericFactor<T>::plan() {
 }
 
 template <class T>
-Status NumericFactor<T>::factorize(const BlockCsr& a) {
-  if (planned_threads_ != thread_count()) plan();
-  for (std::size_t k = 0; k < dim_.size(); ++k) dim_[k] = a.pattern->dim(layout_.node[k]);
-  const auto run = [&](Index t) {
-    const FrontTask& task = layout_.task[t];
-    for (Index s = task.begin; s < task.end; ++s) eliminate(a, s, task.shared);
-  };
-  run_upwards(layout_.task_tree, std::ref(run));
-  return verdict(a);
+void NumericFactor<T>::take_dims(const FactorSource& source) {
+  const NodeBasis& basis = source.basis;
+  basis_.clear();
+  for (std::size_t k = 0; k < dim_.size(); ++k) {
+    const Index node = layout_.node[k];
+    dim_[k] = basis.dim.empty() ? source.a.pattern->dim(node) : basis.dim[node];
+    basis_of_[k] = -1;
+    if (basis.dim.empty() || dim_[k] == 3) continue;
+    basis_of_[k] = static_cast<Index>(basis_.size());
+    basis_.push_back(basis.frame[node]);
+  }
 }
 
 template <class T>
-void NumericFactor<T>::eliminate(const BlockCsr& a, Index s, bool shared) {
+Status NumericFactor<T>::factorize(const FactorSource& source, const FactorVectors& vectors, const double* b) {
+  if (planned_threads_ != thread_count()) plan();
+  take_dims(source);
+  const auto run = [&](Index t) {
+    const FrontTask& task = layout_.task[t];
+    for (Index s = task.begin; s < task.end; ++s) {
+      eliminate(source, s, task.shared);
+      if (b && fate_[s] == Fate::eliminated) forward(s, vectors, b);
+    }
+  };
+  run_upwards(layout_.task_tree, std::ref(run));
+  return verdict(source.a);
+}
+
+template <class T>
+void NumericFactor<T>::eliminate(const FactorSource& source, Index s, bool shared) {
   const Front& front = layout_.front[s];
   for (Index i = front.child_begin; i < front.child_end; ++i)
     if (fate_[layout_.child[i]] != Fate::eliminated) {
@@ -50,7 +69,7 @@ void NumericFactor<T>::eliminate(const BlockCsr& a, Index s, bool shared) {
     }
   T* panel = panels_.data() + front.panel;
   std::fill(panel, panel + front.shape.panel_size(), T(0));
-  assemble(a, front, panel);
+  assemble(source, front, panel);
   add_children(front, panel, true);
   bad_pivot_[s] = factor_panel(front, panel, shared);
   fate_[s] = bad_pivot_[s].column < 0 ? Fate::eliminated : Fate::bad_pivot;
@@ -66,33 +85,82 @@ void NumericFactor<T>::eliminate(const BlockCsr& a, Index s, bool shared) {
   add_children(front, update, false);
 }
 
+namespace {
+
+// Rows are taken in the order of elimination, from all over A. `diagonal` is somewhere in the row.
+void prefetch_row(const double* diagonal, Index width) {
+  for (Index r = 0; r < 3; ++r)
+    for (Index k = -width / 2; k < width / 2; k += 8) __builtin_prefetch(diagonal + r * width + k);
+}
+
+}  // namespace
+
 template <class T>
-void NumericFactor<T>::assemble(const BlockCsr& a, const Front& front, T* panel) const {
-  const BlockPattern& p = *a.pattern;
+void NumericFactor<T>::assemble(const FactorSource& source, const Front& front, T* panel) const {
   const Index r = front.shape.slab_rows;
-  const auto element = [&](Index row, Index column) -> T& {
-    return panel[front.shape.panel_offset(row / r) + Offset{column} * r + row % r];
-  };
+  const auto set_one = [&](Index j) { panel[front.shape.panel_offset(j / r) + Offset{j} * r + j % r] = T(1); };
   for (Index k = front.first_node; k < front.last_node; ++k) {
-    const Index node = layout_.node[k], dim = dim_[k], column = layout_.node_column[k];
-    const double* values = a.values.data() + p.value_start[node];
-    const Index width = p.width(node);
-    const BlockPlace* place = layout_.block.data() + layout_.block_start[k];
-    const BlockPlace* end = layout_.block.data() + layout_.block_start[k + 1];
-    // Row `node` of A read across is the pivots' column read down.
-    for (Index e = p.row_start[node]; e < p.row_start[node + 1] && place < end; ++e) {
-      const Index other = p.column[e];
-      while (place < end && place->node < other) ++place;
-      if (place == end || place->node != other) continue;  // above the diagonal
-      const double* block = values + p.block_offset[e];
-      const Index other_dim = p.dim(other);
-      for (Index i = 0; i < other_dim; ++i)
-        for (Index j = 0; j < dim && (other != node || j <= i); ++j)
-          element(place->row + i, column + j) = static_cast<T>(block[j * width + i]);
-    }
-    for (Index j = dim; j < layout_.node_weight[k]; ++j) element(column + j, column + j) = T(1);
+    if (k + 1 < static_cast<Index>(layout_.node.size()) && source.pattern_is_analyzed)
+      prefetch_row(source.a.values.data() + layout_.block[layout_.block_start[k + 1]].value, layout_.node_width[k + 1]);
+    assemble_node(source, front, k, panel);
+    for (Index j = dim_[k]; j < layout_.node_weight[k]; ++j) set_one(layout_.node_column[k] + j);
   }
-  for (Index j = front.pivots; j < front.shape.columns; ++j) element(j, j) = T(1);
+  for (Index j = front.pivots; j < front.shape.columns; ++j) set_one(j);
+}
+
+namespace {
+
+// B := (first `rows` columns of left)ᵀ B (first `columns` columns of right); null: the identity. B: 3x3 row-major.
+void project(const Mat3* left, Index rows, const Mat3* right, Index columns, double* block) {
+  using Block = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+  Eigen::Map<Block> b(block);
+  if (left) b.topRows(rows) = (left->leftCols(rows).transpose() * b).eval();
+  if (right) b.leftCols(columns) = (b * right->leftCols(columns)).eval();
+}
+
+// Where the block of two nodes begins in A's values, or -1; for a matrix that has not the analysed pattern itself.
+Offset find_block(const BlockPattern& p, Index node, Index other) {
+  const Index k = p.find(node, other);
+  return k < 0 ? -1 : p.value_start[node] + p.block_offset[k];
+}
+
+}  // namespace
+
+// Row `node` of A read across is the pivots' column read down.
+template <class T>
+void NumericFactor<T>::assemble_node(const FactorSource& source, const Front& front, Index k, T* panel) const {
+  const BlockPattern& p = *source.a.pattern;
+  const Index node = layout_.node[k], dim = dim_[k], r = front.shape.slab_rows;
+  if (dim == 0) return;
+  const Index row_length = source.pattern_is_analyzed ? layout_.node_width[k] : p.width(node);
+  T* column = panel + Offset{layout_.node_column[k]} * r;
+  for (Index e = layout_.block_start[k]; e < layout_.block_start[k + 1]; ++e) {
+    const BlockPlace& place = layout_.block[e];
+    const Offset value = source.pattern_is_analyzed ? place.value : find_block(p, node, layout_.node[place.place]);
+    if (value < 0) continue;
+    const double* block = source.a.values.data() + value;
+    Index width = row_length;
+    const Index other_dim = dim_[place.place], basis = basis_of_[k], other_basis = basis_of_[place.place];
+    double projected[9];
+    if (basis >= 0 || other_basis >= 0) {
+      for (Index j = 0; j < 3; ++j)
+        for (Index i = 0; i < 3; ++i) projected[3 * j + i] = block[j * width + i];
+      project(basis >= 0 ? &basis_[basis] : nullptr, dim, other_basis >= 0 ? &basis_[other_basis] : nullptr, other_dim, projected);
+      block = projected, width = 3;
+    }
+    const bool is_diagonal = place.place == k;
+    if (!is_diagonal && dim == 3 && other_dim == 3 && place.rows_in_slab >= 3) {
+      T* to = column + place.offset;
+      for (Index j = 0; j < 3; ++j, to += r, block += width)
+        for (Index i = 0; i < 3; ++i) to[i] = static_cast<T>(block[i]);
+      continue;
+    }
+    for (Index i = 0; i < other_dim; ++i) {
+      T* to =
+          i < place.rows_in_slab ? column + place.offset + i : column + front.shape.panel_offset((place.row + i) / r) + (place.row + i) % r;
+      for (Index j = 0; j < dim && (!is_diagonal || j <= i); ++j) to[j * r] = static_cast<T>(block[j * width + i]);
+    }
+  }
 }
 
 template <class T>

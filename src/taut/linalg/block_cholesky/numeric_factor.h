@@ -19,18 +19,39 @@
 #include "taut/base/status.h"
 #include "taut/linalg/block_cholesky/aligned_array.h"
 #include "taut/linalg/block_cholesky/factor_layout.h"
+#include "taut/linalg/block_cholesky/runnable_kernels.h"
+#include "taut/linalg/node_basis.h"
 
 namespace taut {
+
+// What is factorised: the analysed blocks of Qᵀ A Q.
+struct FactorSource {
+  const BlockCsr& a;
+  NodeBasis basis;
+  bool pattern_is_analyzed;  // A has the analysed pattern itself; else one that fits it, and blocks are searched
+};
+
+// Right-hand sides and solutions: the node at place k of the order has its unknowns from start[k] on. With a basis these are all three; Q
+// is applied on the way in and out.
+struct FactorVectors {
+  std::span<const Index> start;
+  double scale = 1.0;  // multiplies what comes in and divides what goes out: keeps single precision in range
+};
 
 template <class T>
 class NumericFactor {
  public:
-  NumericFactor(const SupernodeTree& tree, const AnalyzedGraph& graph);
+  NumericFactor(const SupernodeTree& tree, const AnalyzedGraph& graph, const FrontKernels<T>& kernels = front_kernels<T>());
 
-  // The pattern of A has been checked against the analysis. Allocates when the number of threads has changed, else nothing.
-  Status factorize(const BlockCsr& a);
-  // x = A⁻¹ b in double vectors of any numbering: the unknowns of the node at place k of the order begin at start[k] and are node_dim(k).
-  void solve(std::span<const Index> start, std::span<const double> b, std::span<double> x);
+  // The pattern of A has been checked against the analysis. Allocates when the number of threads has changed or more nodes than ever have a
+  // basis of their own, else nothing. With `b`, the forward solve is done on the way, while each front is in the cache.
+  Status factorize(const FactorSource& source, const FactorVectors& vectors, const double* b);
+  // y = L⁻¹ P Qᵀ b
+  void solve_forward(const FactorVectors& vectors, const double* b);
+  // x = beta x + Q Pᵀ L⁻ᵀ y, for the y of the last forward solve, which is lost.
+  void solve_backward(const FactorVectors& vectors, double beta, double* x);
+  // yᵀy of the last forward solve, with its scale: summed in a fixed order.
+  double forward_norm2() const;
 
   const FactorLayout& layout() const { return layout_; }
   const char* instruction_set() const { return kernels_.instruction_set; }
@@ -41,13 +62,15 @@ class NumericFactor {
   enum class Fate : std::uint8_t { eliminated, bad_pivot, skipped };
 
   void plan();
-  void eliminate(const BlockCsr& a, Index s, bool shared);
-  void assemble(const BlockCsr& a, const Front& front, T* panel) const;
+  void take_dims(const FactorSource& source);
+  void eliminate(const FactorSource& source, Index s, bool shared);
+  void assemble(const FactorSource& source, const Front& front, T* panel) const;
+  void assemble_node(const FactorSource& source, const Front& front, Index k, T* panel) const;
   void add_children(const Front& front, T* target, bool target_is_panel);
   BadPivot factor_panel(const Front& front, T* panel, bool shared) const;
   Status verdict(const BlockCsr& a) const;
-  void forward(const Front& front, std::span<const Index> start, const double* b);
-  void backward(const Front& front, std::span<const Index> start, double* x);
+  void forward(Index s, const FactorVectors& vectors, const double* b);
+  void backward(Index s, const FactorVectors& vectors, double beta, double* x);
 
   const FrontKernels<T>& kernels_;
   FactorLayout layout_;
@@ -55,7 +78,10 @@ class NumericFactor {
   AlignedArray<T> panels_, updates_, vectors_;
   std::vector<Fate> fate_;           // per front
   std::vector<BadPivot> bad_pivot_;  // per front
+  std::vector<double> norm2_;        // per front: of its part of y
   std::vector<Index> dim_;           // per place in the order: unknowns of the node in the factorised matrix
+  std::vector<Index> basis_of_;      // per place: its Q_i in basis_, or -1: the identity
+  std::vector<Mat3> basis_;
 };
 
 }  // namespace taut

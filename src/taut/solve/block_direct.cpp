@@ -1,0 +1,35 @@
+#include "taut/solve/block_direct.h"
+
+#include "taut/base/timer.h"
+#include "taut/linalg/vector_ops.h"
+#include "taut/solve/full_space.h"
+
+namespace taut {
+
+void BlockDirect::run(const LinearSystem& system, std::span<double> x, SolveSummary& summary) {
+  const BlockCsr& a = *system.matrix;
+  Timer timer;
+  if (pattern_ != a.pattern) {
+    pattern_ = nullptr;
+    summary.status = factor_.analyze(a.pattern, {});
+    if (!summary.status.ok()) return initial_guess(system, x);
+    pattern_ = a.pattern;
+  }
+  summary.order_ms = timer.lap();
+  load_.resize(x.size());
+  free_part_.resize(x.size());
+  load_without_prescribed(system, load_);
+  summary.reduce_ms = timer.lap();
+  summary.status = factor_.factorize(a, free_basis(system), load_);
+  summary.factor_ms = timer.lap();
+  if (!summary.status.ok()) return initial_guess(system, x);
+  factor_.solve_backward(0.0, free_part_);
+  LinearSystem from_rest = system;
+  from_rest.guess = {};
+  initial_guess(from_rest, x);
+  add_scaled(1.0, free_part_, x);
+  summary.solve_ms = timer.lap();
+  summary.memory_bytes = factor_.statistics().bytes + 2.0 * sizeof(double) * static_cast<double>(x.size());
+}
+
+}  // namespace taut

@@ -1,0 +1,31 @@
+#include "taut/solve/full_space.h"
+
+#include <algorithm>
+
+namespace taut {
+
+NodeBasis free_basis(const LinearSystem& system) {
+  if (!system.constraints) return {};
+  return {system.constraints->ndofs(), system.constraints->frames()};
+}
+
+void load_without_prescribed(const LinearSystem& system, std::span<double> load) {
+  std::copy(system.rhs.begin(), system.rhs.end(), load.begin());
+  if (!system.constraints) return;
+  const BlockCsr& a = *system.matrix;
+  const BlockPattern& p = *a.pattern;
+  for (Index i = 0; i < p.rows(); ++i) {
+    if (system.constraints->ndof(i) == 3) continue;
+    const Vec3 z = system.constraints->constrained_part(i, Eigen::Map<const Vec3>(&system.z[3 * static_cast<std::size_t>(i)]));
+    if (z.isZero(0.0)) continue;
+    // A is symmetric: its column i is its row i.
+    const Index width = p.width(i);
+    for (Index k = p.row_start[i]; k < p.row_start[i + 1]; ++k) {
+      const double* block = a.block(i, k);
+      double* to = &load[static_cast<std::size_t>(p.column_dof[k])];
+      for (Index c = 0; c < 3; ++c) to[c] -= block[c] * z.x() + block[width + c] * z.y() + block[2 * width + c] * z.z();
+    }
+  }
+}
+
+}  // namespace taut

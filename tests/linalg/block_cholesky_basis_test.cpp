@@ -1,0 +1,124 @@
+// Factorising a part of Qᵀ A Q straight from A, against dense matrices.
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "linalg/random_matrix.h"
+#include "taut/linalg/block_cholesky.h"
+
+namespace taut::test {
+namespace {
+
+struct Basis {
+  std::vector<std::int8_t> dim;
+  std::vector<Mat3> frame;
+  NodeBasis view() const { return {dim, frame}; }
+  Eigen::MatrixXd dense() const {
+    Index columns = 0, column = 0;
+    for (const int d : dim) columns += d;
+    Eigen::MatrixXd q = Eigen::MatrixXd::Zero(3 * static_cast<Index>(dim.size()), columns);
+    for (std::size_t i = 0; i < dim.size(); ++i)
+      for (int c = 0; c < dim[i]; ++c) {
+        const Vec3 direction = dim[i] == 3 ? Vec3(Vec3::Unit(c)) : Vec3(frame[i].col(c));
+        q.block<3, 1>(3 * static_cast<Index>(i), column++) = direction;
+      }
+    return q;
+  }
+};
+
+Basis random_basis(Random& random, Index nodes) {
+  Basis basis;
+  for (Index i = 0; i < nodes; ++i) {
+    basis.dim.push_back(static_cast<std::int8_t>(random.below(2) ? 3 : random.below(3)));
+    Mat3 m;
+    for (int c = 0; c < 3; ++c) m.col(c) = random.direction();
+    basis.frame.push_back(m.householderQr().householderQ());
+  }
+  return basis;
+}
+
+struct BasisCase {
+  BlockCsr a;
+  std::vector<std::uint8_t> mask;
+  Basis basis;
+  Eigen::MatrixXd part() const {  // of Qᵀ A Q
+    BlockCsr masked = a;
+    const BlockPattern& p = *a.pattern;
+    for (Index i = 0; i < p.rows(); ++i)
+      for (Index k = p.row_start[i]; k < p.row_start[i + 1]; ++k)
+        for (Index r = 0; r < 3; ++r)
+          for (Index c = 0; c < 3; ++c)
+            if (!mask[k] && p.column[k] != i) masked.block(i, k)[r * p.width(i) + c] = 0.0;
+    const Eigen::MatrixXd q = basis.dense();
+    return q.transpose() * dense(masked) * q;
+  }
+};
+
+BasisCase random_case(Random& random, Index nodes) {
+  BasisCase c{random_spd(random, make_pattern(random_graph(random, nodes, 4, 30), 3), 1e-2), {}, random_basis(random, nodes)};
+  const BlockPattern& p = *c.a.pattern;
+  for (Index i = 0; i < nodes; ++i)
+    for (Index k = p.row_start[i]; k < p.row_start[i + 1]; ++k) c.mask.push_back((i + p.column[k]) % 3 != 0);
+  return c;
+}
+
+class BlockFactorBasis : public testing::TestWithParam<CholeskyPrecision> {
+ protected:
+  double tolerance() const { return GetParam() == CholeskyPrecision::double_precision ? 1e-11 : 3e-5; }
+  BlockCholesky cholesky_{GetParam()};
+};
+
+INSTANTIATE_TEST_SUITE_P(Precisions, BlockFactorBasis,
+                         testing::Values(CholeskyPrecision::double_precision, CholeskyPrecision::single_precision),
+                         [](const auto& p) { return p.param == CholeskyPrecision::double_precision ? "double" : "single"; });
+
+// `size`: of b, to see that single precision does not run out of range.
+void expect_solves(BlockCholesky& cholesky, const BasisCase& c, Random& random, double tolerance, double size) {
+  std::vector<double> b = random.vector(c.a.dofs());
+  for (double& value : b) value *= size;
+  double norm2 = -1.0;
+  const Status status = cholesky.factorize(c.a, c.basis.view(), b, &norm2);
+  ASSERT_TRUE(status.ok()) << status.message;
+  const Eigen::MatrixXd q = c.basis.dense();
+  const Eigen::VectorXd reduced = c.part().llt().solve(q.transpose() * as_eigen(b));
+  const double expected_norm2 = as_eigen(b).dot(q * reduced);
+  EXPECT_NEAR(norm2, expected_norm2, tolerance * expected_norm2);
+  std::vector<double> x(b.size(), std::numeric_limits<double>::quiet_NaN());
+  cholesky.solve_backward(0.0, x);
+  EXPECT_LT(relative_difference(x, q * reduced), tolerance);
+
+  // Again, apart from the factorisation, and added to what was there.
+  const std::vector<double> before = random.vector(c.a.dofs());
+  x = before;
+  EXPECT_EQ(cholesky.solve_forward(b), norm2);
+  cholesky.solve_backward(0.5 * size, x);
+  EXPECT_LT(relative_difference(x, 0.5 * size * as_eigen(before) + q * reduced), tolerance);
+}
+
+TEST_P(BlockFactorBasis, SolvesThePartInTheBasis) {
+  Random random(1);
+  for (const Index nodes : {1, 5, 40, 140}) {
+    BasisCase c = random_case(random, nodes);
+    ASSERT_TRUE(cholesky_.analyze(c.a.pattern, c.mask).ok());
+    for (const double size : {1.0, 1e-30, 1e30}) {
+      c.a.values = random_spd(random, c.a.pattern, 1e-2).values;
+      c.basis = random_basis(random, nodes);
+      expect_solves(cholesky_, c, random, tolerance(), size);
+    }
+  }
+}
+
+TEST_P(BlockFactorBasis, WithoutBasisAndMask) {
+  Random random(2);
+  const BlockCsr a = random_spd(random, make_pattern(random_graph(random, 50, 3, 20), random_dims(random, 50)), 1e-2);
+  ASSERT_TRUE(cholesky_.analyze(a.pattern, {}).ok());
+  const std::vector<double> b = random.vector(a.dofs());
+  std::vector<double> x(b.size());
+  ASSERT_TRUE(cholesky_.factorize(a, {}, b).ok());
+  cholesky_.solve_backward(0.0, x);
+  EXPECT_LT(relative_difference(x, dense(a).llt().solve(as_eigen(b))), tolerance());
+}
+
+}  // namespace
+}  // namespace taut::test
