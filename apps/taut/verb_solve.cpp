@@ -1,7 +1,10 @@
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <optional>
 
+#include "solve/solve_figure.h"
 #include "solve/solve_report.h"
 #include "taut/base/error.h"
 #include "taut/base/file.h"
@@ -19,7 +22,9 @@ struct SolveArguments {
   std::vector<std::string> solvers;
   bool all = false;
   SolverOptions options{.tolerance = 1e-6};
-  std::string history, json;
+  SolveLimits limits;
+  std::optional<double> residual;
+  std::string history, json, plot;
   bool wants_json = false;
   int threads = 0;
 };
@@ -53,20 +58,40 @@ void print_table(const std::vector<SolverRow>& rows, const Reference& reference,
              system.constraints ? system.constraints->free_dofs() : stored.unknowns(), tolerance);
   if (reference.x.empty()) fmt::print("no reference solution, so no A-norm error: {}\n", reference.report.status.message);
   fmt::print("\n{}", solve_table(rows));
-  for (const auto& [summary, error] : rows)
+  for (const auto& [summary, error, solves, options] : rows)
     if (!summary.remark.empty()) fmt::print("{}: {}\n", summary.solver, summary.remark);
 }
 
-void write_histories(const SolveArguments& arguments, const std::vector<std::string>& names, const LinearSystem& system,
-                     const Reference& reference) {
+void write_histories(const SolveArguments& arguments, const std::vector<SolverRow>& rows, const LinearSystem& system,
+                     const Reference& reference, const std::string& title) {
   std::vector<HistoryPoint> points;
-  for (const std::string& name : names) {
-    SolverOptions options = arguments.options;
-    options.name = name;
-    const auto history = record_history(system, options, reference);
+  for (const SolverRow& row : rows) {
+    const auto history = record_history(system, row, reference);
     points.insert(points.end(), history.begin(), history.end());
   }
-  write_file(arguments.history, history_csv(points));
+  if (!arguments.history.empty()) write_file(arguments.history, history_csv(points));
+  if (!arguments.plot.empty()) draw_figure(solve_figure(rows, points, title), arguments.plot);
+}
+
+// Someone else's matrix comes without a stop rule of ours: there, the residual is what people mean by converged.
+SolveLimits limits_of(const SolveArguments& arguments) {
+  SolveLimits limits = arguments.limits;
+  limits.residual = arguments.residual.value_or(arguments.folder.empty() ? arguments.options.tolerance : 0.0);
+  return limits;
+}
+
+std::vector<SolverRow> measure_all(const SolveArguments& arguments, const LinearSystem& system, const Reference& reference) {
+  const std::vector<std::string> names = chosen_solvers(arguments);
+  const bool terminal = ::isatty(STDERR_FILENO);
+  SolverOptions options = arguments.options;
+  std::vector<SolverRow> rows;
+  for (const std::string& name : names) {
+    if (terminal) fmt::print(stderr, "\r\033[K{} of {}: {} ...", rows.size() + 1, names.size(), name);
+    options.name = name;
+    rows.push_back(measure_solver(system, options, reference, limits_of(arguments)));
+  }
+  if (terminal) fmt::print(stderr, "\r\033[K");
+  return rows;
 }
 
 // A wrong name is bad usage, told before minutes of reading and solving.
@@ -79,26 +104,24 @@ void check_solver_names(const SolveArguments& arguments) try {
 
 int solve(const SolveArguments& arguments) {
   if (arguments.threads > 0) set_thread_count(arguments.threads);
-  const std::vector<std::string> names = chosen_solvers(arguments);
-  SolverOptions options = arguments.options;
+  if (!arguments.plot.empty()) check_figure_file(arguments.plot);
   const StoredSystem stored(chosen_files(arguments));
   const LinearSystem system = stored.system();
   const Reference reference = make_reference(system);
-  std::vector<SolverRow> rows;
-  for (const std::string& name : names) {
-    options.name = name;
-    rows.push_back(measure_solver(system, options, reference));
-  }
-  if (!arguments.history.empty()) write_histories(arguments, names, system, reference);
+  const std::vector<SolverRow> rows = measure_all(arguments, system, reference);
+  const nlohmann::ordered_json facts = facts_of(arguments, stored);
+  if (!arguments.history.empty() || !arguments.plot.empty())
+    write_histories(arguments, rows, system, reference,
+                    fmt::format("{}: {} unknowns", facts.value("scene", std::string()), stored.unknowns()));
 
   const bool json_to_stdout = arguments.wants_json && arguments.json.empty();
-  if (!json_to_stdout) print_table(rows, reference, stored, options.tolerance);
+  if (!json_to_stdout) print_table(rows, reference, stored, arguments.options.tolerance);
   if (arguments.wants_json) {
-    const std::string json = solve_json(rows, facts_of(arguments, stored)).dump(2) + "\n";
+    const std::string json = solve_json(rows, facts).dump(2) + "\n";
     json_to_stdout ? fmt::print("{}", json) : write_file(arguments.json, json);
   }
   bool all_converged = true;
-  for (const auto& [summary, error] : rows) {
+  for (const auto& [summary, error, solves, options] : rows) {
     if (summary.status.ok()) continue;
     all_converged = false;
     fmt::print(stderr, "taut: {}: {}{}{}\n", summary.solver, name_of(summary.status.outcome), summary.status.message.empty() ? "" : ": ",
@@ -135,15 +158,26 @@ void add_solve_verb(CLI::App& app, int& exit_code) {
       ->check(CLI::PositiveNumber);
   verb->add_option("--reordering", arguments->options.reordering, "core_pcg: reorder `vectors` in each iteration or `matrix` once")
       ->check(CLI::IsMember({"vectors", "matrix"}));
+  verb->add_option("--residual", arguments->residual,
+                   "Converged means this true relative residual too, 2-norm; 0: the stop rule is enough (default with --matrix: the "
+                   "tolerance, else 0)")
+      ->check(CLI::Range(0.0, 1.0));
+  verb->add_option("--time-limit", arguments->limits.seconds, "Seconds for one solve of an iterative method (default: 60)")
+      ->check(CLI::PositiveNumber);
+  verb->add_option("--repeat", arguments->limits.repeats,
+                   "Solves whose median times are given (default: 5, or 1 when one takes over 0.2 s)")
+      ->check(CLI::Range(1, 1000));
   CLI::Option* json = verb->add_option("--json", arguments->json, "Write the figures to FILE; without FILE to stdout, instead of the table")
                           ->expected(0, 1)
                           ->type_name("[FILE]");
-  verb->add_option("--history", arguments->history, "Write a CSV of every iteration: solver,iteration,stop_value,residual,anorm_error")
+  verb->add_option("--history", arguments->history,
+                   "Write a CSV of every iteration: solver,iteration,stop_value,residual,anorm_error,time_ms")
       ->type_name("FILE");
+  verb->add_option("--plot", arguments->plot, "Draw A-norm error against time, a curve a method")->type_name("FILE.svg|png");
   verb->add_option("--threads", arguments->threads, "Threads to use (default: all processors)")->check(CLI::Range(1, 1024));
   verb->footer(
       "Example: taut solve out/ball_60 --solver core_pcg,mpcg,cholmod --tolerance 1e-3\n"
-      "Example: taut solve --matrix A.mtx --rhs b.mtx --all --json out/solvers.json\n"
+      "Example: taut solve --matrix A.mtx --rhs b.mtx --all --json out/solvers.json --plot out/solvers.svg\n"
       "A-norm error: |S(x - x*)|_A / |S x*|_A against a refined direct solution x*. Exit code 1 when a solver did not converge.");
   verb->callback([=, &exit_code] {
     if (arguments->folder.empty() && arguments->files.matrix.empty())

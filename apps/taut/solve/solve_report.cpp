@@ -13,8 +13,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-double setup_ms(const SolveSummary& s) { return s.reduce_ms + s.order_ms + s.factor_ms; }
-
 std::string error_text(double error) { return error < 0.0 ? "" : fmt::format("{:.2e}", error); }
 
 // JSON has no NaN and no infinity.
@@ -33,6 +31,7 @@ Json row_json(const SolverRow& row, const Json& facts, double reference_ms) {
   json["iterations"] = s.iterations;
   json["setup_ms"] = setup_ms(s);
   json["solve_ms"] = s.solve_ms;
+  json["solves"] = row.solves;
   json["total_ms"] = s.total_ms();
   if (reference_ms > 0.0) json["ratio_to_cholmod_full"] = s.total_ms() / reference_ms;
   if (row.anorm_error >= 0.0) put_finite(json, "anorm_error", row.anorm_error);
@@ -46,11 +45,11 @@ Json row_json(const SolverRow& row, const Json& facts, double reference_ms) {
 }  // namespace
 
 std::string solve_table(const std::vector<SolverRow>& rows) {
-  TextTable table({"solver", "status", "iterations", "setup ms", "solve ms", "memory MB", "residual", "A-norm error"});
-  for (const auto& [s, error] : rows)
+  TextTable table({"solver", "status", "iterations", "setup ms", "solve ms", "solves", "memory MB", "residual", "A-norm error"});
+  for (const auto& [s, error, solves, options] : rows)
     table.add({s.solver, name_of(s.status.outcome), std::to_string(s.iterations), fmt::format("{:.2f}", setup_ms(s)),
-               fmt::format("{:.2f}", s.solve_ms), fmt::format("{:.2f}", s.memory_bytes / 1e6), fmt::format("{:.2e}", s.relative_residual),
-               error_text(error)});
+               fmt::format("{:.2f}", s.solve_ms), std::to_string(solves), fmt::format("{:.2f}", s.memory_bytes / 1e6),
+               fmt::format("{:.2e}", s.relative_residual), error_text(error)});
   return table.text();
 }
 
@@ -79,10 +78,10 @@ Json dump_facts(const std::string& meta_file) {
 }
 
 std::string history_csv(const std::vector<HistoryPoint>& points) {
-  std::string text = "solver,iteration,stop_value,residual,anorm_error\n";
+  std::string text = "solver,iteration,stop_value,residual,anorm_error,time_ms\n";
   for (const HistoryPoint& p : points)
-    fmt::format_to(std::back_inserter(text), "{},{},{:.9g},{:.9g},{}\n", p.solver, p.iteration, p.stop_value, p.residual,
-                   p.anorm_error < 0.0 ? "" : fmt::format("{:.9g}", p.anorm_error));
+    fmt::format_to(std::back_inserter(text), "{},{},{:.9g},{:.9g},{},{:.6g}\n", p.solver, p.iteration, p.stop_value, p.residual,
+                   p.anorm_error < 0.0 ? "" : fmt::format("{:.9g}", p.anorm_error), p.time_ms);
   return text;
 }
 

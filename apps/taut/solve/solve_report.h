@@ -13,7 +13,7 @@ std::string solve_table(const std::vector<SolverRow>& rows);
 nlohmann::ordered_json solve_json(const std::vector<SolverRow>& rows, const nlohmann::ordered_json& facts);
 // What meta.json of a dump says about the system: scene, nodes, k_stretch, k_shear, k_bend, h, integrator. {} when it says nothing.
 nlohmann::ordered_json dump_facts(const std::string& meta_file);
-// solver,iteration,stop_value,residual,anorm_error
+// solver,iteration,stop_value,residual,anorm_error,time_ms
 std::string history_csv(const std::vector<HistoryPoint>& points);
 
 }  // namespace taut::app

@@ -1,0 +1,93 @@
+#include "taut/plot/plot_layout.h"
+
+#include <algorithm>
+
+namespace taut {
+
+namespace {
+
+constexpr double letter = 7.6, title_height = 44, panel_title_height = 26, note_height = 26, axis_height = 54, edge = 16;
+
+// Letters, roughly: continuation bytes of UTF-8 are none.
+double text_width(const std::string& text) {
+  return letter * static_cast<double>(std::ranges::count_if(text, [](unsigned char c) { return (c & 0xC0) != 0x80; }));
+}
+
+double widest(const std::vector<std::string>& texts) {
+  double width = 0;
+  for (const std::string& text : texts) width = std::max(width, text_width(text));
+  return width;
+}
+
+double legend_width(const Figure& figure) {
+  double width = 0;
+  for (const Panel& panel : figure.panels)
+    for (const Curve& curve : panel.curves) width = std::max(width, text_width(curve.name));
+  return width > 0 ? width + 64 : 0;
+}
+
+bool has_heat_map(const Figure& figure) {
+  return std::ranges::any_of(figure.panels, [](const Panel& panel) { return !panel.heat_map.empty(); });
+}
+
+// Room left of a frame for the numbers and the label of its y axis.
+double left_room(const Figure& figure) {
+  double width = 62;
+  for (const Panel& panel : figure.panels)
+    for (const HeatMap& map : panel.heat_map) width = std::max(width, widest(map.rows) + 24);
+  return width + 24;
+}
+
+int chosen(int wanted, double otherwise) { return wanted > 0 ? wanted : static_cast<int>(otherwise); }
+
+int panel_width(const Figure& figure) {
+  double width = figure.columns == 1 ? 760 : figure.columns == 2 ? 400 : 290;
+  for (const Panel& panel : figure.panels)
+    for (const HeatMap& map : panel.heat_map) width = std::max(width, 62.0 * static_cast<double>(map.columns.size()));
+  return chosen(figure.panel_width, width);
+}
+
+int panel_height(const Figure& figure) {
+  double height = figure.panels.size() == 1 ? 460 : figure.columns == 1 ? 150 : 230;
+  std::size_t legend = 0;
+  for (const Panel& panel : figure.panels) {
+    for (const HeatMap& map : panel.heat_map) height = std::max(height, 24.0 * static_cast<double>(map.rows.size()));
+    legend = std::max(legend, panel.curves.size());
+  }
+  if (!figure.shared_legend) height = std::max(height, 19.0 * static_cast<double>(legend));
+  return chosen(figure.panel_height, height);
+}
+
+}  // namespace
+
+PlotLayout lay_out(const Figure& figure) {
+  const int columns = std::max(1, figure.columns), panels = static_cast<int>(figure.panels.size());
+  const int rows = (panels + columns - 1) / columns;
+  const double left = left_room(figure), width = panel_width(figure), height = panel_height(figure);
+  const double legend = legend_width(figure), colours = has_heat_map(figure) ? 110 : 0;
+  const bool titled = std::ranges::any_of(figure.panels, [](const Panel& panel) { return !panel.title.empty(); });
+  const double above = titled ? panel_title_height : 8;
+  // Stacked over one another, only the lowest panel needs its x axis written out.
+  const bool each_axis = columns > 1 || std::ranges::any_of(figure.panels, [](const Panel& panel) { return !panel.x.label.empty(); });
+  const double below = each_axis && rows > 1 && columns > 1 ? axis_height : 10;
+  const double own_legend = figure.shared_legend ? 0 : legend;
+
+  PlotLayout layout;
+  const double head = figure.title.empty() ? edge : title_height, foot = (figure.note.empty() ? 4 : note_height) + axis_height - below;
+  layout.width = static_cast<int>(columns * (left + width + own_legend) + (figure.shared_legend ? legend : 0) + colours + edge);
+  layout.width =
+      std::max(layout.width, static_cast<int>(std::max(1.15 * text_width(figure.title), 0.82 * text_width(figure.note)) + 2 * edge));
+  layout.height = static_cast<int>(head + rows * (above + height + below) + foot);
+  for (int p = 0; p < panels; ++p) {
+    const int row = p / columns, column = p % columns;
+    const double x = column * (left + width + own_legend) + left, top = layout.height - head - row * (above + height + below) - above;
+    layout.axes.push_back({x, top - height, x + width, top});
+  }
+  if (colours > 0) {
+    const double x = columns * (left + width + own_legend) + 14;
+    layout.colour_bar = {x, layout.axes.back().bottom, x + 18, layout.axes.front().top};
+  }
+  return layout;
+}
+
+}  // namespace taut
