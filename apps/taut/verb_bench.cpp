@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 
+#include <functional>
+
 #include "bench/benches.h"
+#include "plot/bench_figure.h"
 #include "taut/base/error.h"
 #include "taut/base/file.h"
 #include "taut/base/parallel.h"
@@ -11,23 +14,39 @@ namespace taut::app {
 
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 struct BenchArguments {
   BenchOptions options;
-  std::string json;
+  std::string json, plot;
   int threads = 1;
 };
 
-using BenchFunction = std::vector<ReportRow> (*)(const BenchOptions&);
+using BenchFunction = std::function<Json(const BenchOptions&)>;
 
-int run_bench(BenchFunction bench, const BenchArguments& arguments) {
-  if (!make_cholesky("cholmod")) throw InputError("the paper's tables compare with CHOLMOD, which is not built into this program; build with -DTAUT_WITH_CHOLMOD=ON");
+// The paper's tables hand over their cells.
+template <std::vector<ReportRow> (*bench)(const BenchOptions&)>
+Json table_rows(const BenchOptions& options) {
+  Json rows = Json::array();
+  for (const ReportRow& row : bench(options)) rows.push_back(to_json(row, thread_count()));
+  return rows;
+}
+
+int run_bench(const std::string& name, const BenchFunction& bench, const BenchArguments& arguments) {
+  if (!make_cholesky("cholmod"))
+    throw InputError("the benches compare with CHOLMOD, which is not built into this program; build with -DTAUT_WITH_CHOLMOD=ON");
+  if (!arguments.plot.empty()) check_figure_file(arguments.plot);
   set_thread_count(arguments.threads);
   const MachineFacts machine = machine_facts(true);
   fmt::print("{}\n\n", to_line(machine));
-  const std::vector<ReportRow> rows = bench(arguments.options);
+  const Json report{{"bench", name}, {"machine", to_json(machine)}, {"rows", bench(arguments.options)}};
   if (!arguments.json.empty()) {
-    write_report(arguments.json, machine, rows);
+    write_file(arguments.json, report.dump(2) + "\n");
     fmt::print("\nwritten to {}\n", arguments.json);
+  }
+  if (!arguments.plot.empty()) {
+    draw_figure(bench_figure(report), arguments.plot);
+    fmt::print("\ndrawn in {}\n", arguments.plot);
   }
   return 0;
 }
@@ -51,19 +70,48 @@ void add_roofline(CLI::App& parent, int& exit_code) {
   });
 }
 
-CLI::App* add_bench(CLI::App& parent, const char* name, const char* description, BenchFunction bench, int& exit_code) {
+struct NewBench {
+  CLI::App* verb;
+  std::shared_ptr<BenchArguments> arguments;
+};
+
+NewBench add_bench(CLI::App& parent, const char* name, const char* description, const BenchFunction& bench, int& exit_code) {
   CLI::App* verb = parent.add_subcommand(name, description);
   auto arguments = std::make_shared<BenchArguments>();
-  BenchOptions& options = arguments->options;
   verb->add_option("--json", arguments->json, "Write the figures to this file");
-  verb->add_option("--threads", arguments->threads, "Threads for Taut's own parts (default 1, as in the paper; CHOLMOD's BLAS always has one)")->check(CLI::Range(1, 1024));
+  verb->add_option("--plot", arguments->plot, "Draw them in this file (.svg or .png)");
+  verb->add_option("--threads", arguments->threads,
+                   "Threads for Taut's own parts (default 1, as in the paper; CHOLMOD's BLAS always has one)")
+      ->check(CLI::Range(1, 1024));
+  verb->add_option("--scenes", arguments->options.scenes, "Folder of the scene files (default: scenes)");
+  verb->footer(fmt::format("Example: taut bench {0} --json out/{0}.json --plot out/{0}.png", name));
+  verb->callback([=, &exit_code] { exit_code = run_bench(name, bench, *arguments); });
+  return {verb, arguments};
+}
+
+void add_table(CLI::App& parent, const char* name, const char* description, const BenchFunction& bench, int& exit_code) {
+  const auto [verb, arguments] = add_bench(parent, name, description, bench, exit_code);
+  BenchOptions& options = arguments->options;
   verb->add_option("--steps", options.steps, "Steps to measure a cell (default 20)")->check(CLI::Range(1, 100000));
   verb->add_option("--tolerance", options.tolerance, "Of the paper's stop rule (default 1e-3)")->check(CLI::Range(1e-14, 1.0));
   verb->add_option("--k-stretch", options.stiffnesses, "Only these stiffnesses, N/m")->check(CLI::PositiveNumber);
   verb->add_option("--nodes", options.nodes, "Only these sizes: 1681, 6561, 25921")->check(CLI::IsMember({1681, 6561, 25921}));
-  verb->add_option("--scenes", options.scenes, "Folder of the scene files (default: scenes)");
-  verb->footer(fmt::format("Example: taut bench {} --json out/{}.json", name, name));
-  verb->callback([=, &exit_code] { exit_code = run_bench(bench, *arguments); });
+}
+
+// Flatness and scale: time to equal error on one state.
+CLI::App* add_sweep(CLI::App& parent, const char* name, const char* description, const char* sizes, const BenchFunction& bench,
+                    int& exit_code) {
+  const auto [verb, arguments] = add_bench(parent, name, description, bench, exit_code);
+  BenchOptions& options = arguments->options;
+  verb->add_flag("--full", options.full, "All of it: takes much longer than ten minutes");
+  verb->add_option("--nodes", options.nodes, sizes)->delimiter(',')->check(CLI::PositiveNumber);
+  verb->add_option("--solver", options.methods, "Only these solvers (default: those worth comparing)")->delimiter(',');
+  verb->add_option("--time-limit", options.seconds_limit, "Seconds after which a method is given up (default 20)")
+      ->check(CLI::PositiveNumber);
+  if (std::string(name) == "flatness")
+    verb->add_option("--k-stretch", options.stiffnesses, "Only these of 60, 600, ..., 6000000 N/m")
+        ->delimiter(',')
+        ->check(CLI::IsMember({60, 600, 6000, 60000, 600000, 6000000}));
   return verb;
 }
 
@@ -73,8 +121,13 @@ void add_bench_verb(CLI::App& app, int& exit_code) {
   CLI::App* verb = app.add_subcommand("bench", "Measure the paper's tables and more on this machine");
   verb->require_subcommand(1);
   verb->footer("Example: taut bench table2 --nodes 6561");
-  add_bench(*verb, "table1", "Paper, Table 1: MPCG against uPCG, pinned and draping cloth", bench_table1, exit_code);
-  add_bench(*verb, "table2", "Paper, Table 2: MPCG, CHOLMOD, PARDISO and corePCG on a sheet hit by a ball", bench_table2, exit_code);
+  add_table(*verb, "table1", "Paper, Table 1: MPCG against uPCG, pinned and draping cloth", table_rows<bench_table1>, exit_code);
+  add_table(*verb, "table2", "Paper, Table 2: MPCG, CHOLMOD, PARDISO and corePCG on a sheet hit by a ball", table_rows<bench_table2>,
+            exit_code);
+  add_sweep(*verb, "flatness", "Time to equal error over stiffness, time step, shear and bend; the core's bound beside what is measured",
+            "Nodes of the square sheet (default 6561, with --full 25921)", bench_flatness, exit_code);
+  add_sweep(*verb, "scale", "Time to equal error and memory over the number of nodes, with fitted exponents",
+            "Only these sizes, square numbers (default 1681 to 103041, with --full to 1002001)", bench_scale, exit_code);
   add_roofline(*verb, exit_code);
 }
 

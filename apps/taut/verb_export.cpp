@@ -43,8 +43,10 @@ int export_frames(const ExportArguments& arguments) {
       if (static_cast<Index>(x.size()) != cloth.nodes())
         throw InputError({results.frame_file(frame).string()}, fmt::format("has {} nodes, the scene has {}", x.size(), cloth.nodes()));
       // A point cache moves a mesh: its first frame goes beside it.
-      if (!cache) write_obj(out / fmt::format("{}_{:06}.obj", part.name, frame), part_mesh(cloth, part, x));
-      else if (frame == 0) write_obj(out / (part.name + ".obj"), part_mesh(cloth, part, x));
+      if (!cache)
+        write_obj(out / fmt::format("{}_{:06}.obj", part.name, frame), part_mesh(cloth, part, x));
+      else if (frame == 0)
+        write_obj(out / (part.name + ".obj"), part_mesh(cloth, part, x));
       if (cache) cache->add_sample(std::span(x).subspan(part.first_node, part.node_count));
     }
     if (cache) cache->finish();
@@ -59,7 +61,9 @@ void add_export_verb(CLI::App& app, int& exit_code) {
   CLI::App* verb = app.add_subcommand("export", "Convert the frames of a simulation for other programs");
   auto arguments = std::make_shared<ExportArguments>();
   verb->add_option("DIR", arguments->folder, "Results folder of `taut run`")->required();
-  verb->add_option("--format", arguments->format, "obj: a file a frame and cloth; pc2: a mesh and a point cache a cloth")->required()->check(CLI::IsMember({"obj", "pc2"}));
+  verb->add_option("--format", arguments->format, "obj: a file a frame and cloth; pc2: a mesh and a point cache a cloth")
+      ->required()
+      ->check(CLI::IsMember({"obj", "pc2"}));
   verb->add_option("--out", arguments->out, "Folder to write to (default: DIR/FORMAT)");
   verb->footer("Example: taut export out/ball --format pc2");
   verb->callback([arguments, &exit_code] { exit_code = export_frames(*arguments); });

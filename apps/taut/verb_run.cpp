@@ -22,10 +22,13 @@ int run_scene(const RunArguments& arguments) {
   if (arguments.frames >= 0) settings.push_back(fmt::format("time.frames={}", arguments.frames));
   if (!arguments.solver.empty()) settings.push_back("solver.name=" + arguments.solver);
   Scene scene = read_scene(arguments.scene, settings);
-  const ProgressStyle style = arguments.json_lines ? ProgressStyle::json_lines : arguments.quiet ? ProgressStyle::quiet : ProgressStyle::automatic;
+  const ProgressStyle style = arguments.json_lines ? ProgressStyle::json_lines
+                              : arguments.quiet    ? ProgressStyle::quiet
+                                                   : ProgressStyle::automatic;
   if (style == ProgressStyle::automatic)
     for (const std::string& doubt : doubtful(scene)) fmt::print(stderr, "note: {}\n", doubt);
-  const ResultsFolder results(arguments.out.empty() ? std::filesystem::path("out") / std::filesystem::path(arguments.scene).stem() : std::filesystem::path(arguments.out));
+  const ResultsFolder results(arguments.out.empty() ? std::filesystem::path("out") / std::filesystem::path(arguments.scene).stem()
+                                                    : std::filesystem::path(arguments.out));
   Simulation simulation(std::move(scene));
   results.start(simulation);
   return simulate(simulation, results, {style, !arguments.no_picture}, 0);
@@ -39,14 +42,18 @@ void add_run_verb(CLI::App& app, int& exit_code) {
   verb->add_option("SCENE", arguments->scene, "Scene file (TOML)")->required();
   verb->add_option("--out", arguments->out, "Folder for the results (default: out/SCENE)");
   verb->add_option("--frames", arguments->frames, "Stop after this many frames")->check(CLI::NonNegativeNumber);
-  verb->add_option("--threads", arguments->threads, "Threads to use (default: all processors); the results do not depend on it")->check(CLI::Range(1, 1024));
+  verb->add_option("--threads", arguments->threads, "Threads to use (default: all processors); the results do not depend on it")
+      ->check(CLI::Range(1, 1024));
   verb->add_option("--solver", arguments->solver, "Linear solver, as solver.name in the scene");
-  verb->add_option("--set", arguments->settings, "Change a key of the scene: key=value, e.g. cloth.k_stretch=600; may be repeated")->take_all()->type_name("KEY=VALUE");
+  verb->add_option("--set", arguments->settings, "Change a key of the scene: key=value, e.g. cloth.k_stretch=600; may be repeated")
+      ->take_all()
+      ->type_name("KEY=VALUE");
   verb->add_flag("--quiet", arguments->quiet, "No progress and no table");
   verb->add_flag("--json-lines", arguments->json_lines, "Progress as one JSON object a step on stdout");
   verb->add_flag("--no-picture", arguments->no_picture, "Draw no contact sheet at the end");
-  verb->footer("Example: taut run scenes/ball.toml --set cloth.grid.nodes=[41,41] --out out/small\n"
-               "Ctrl-C stops after the current step with everything so far valid; `taut resume DIR` goes on.");
+  verb->footer(
+      "Example: taut run scenes/ball.toml --set cloth.grid.nodes=[41,41] --out out/small\n"
+      "Ctrl-C stops after the current step with everything so far valid; `taut resume DIR` goes on.");
   verb->callback([arguments, &exit_code] { exit_code = run_scene(*arguments); });
 }
 

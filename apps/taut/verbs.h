@@ -13,5 +13,6 @@ void add_bench_verb(CLI::App& app, int& exit_code);
 void add_dump_verb(CLI::App& app, int& exit_code);
 void add_solve_verb(CLI::App& app, int& exit_code);
 void add_export_verb(CLI::App& app, int& exit_code);
+void add_plot_verb(CLI::App& app, int& exit_code);
 
 }  // namespace taut::app

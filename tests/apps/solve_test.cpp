@@ -168,12 +168,13 @@ TEST(Solve, HistoryHoldsEveryIteration) {
   EXPECT_NE(end.out.find("mpcg"), std::string::npos);  // the table stays on stdout when the JSON goes to a file
   const auto rows = rows_by_solver(read_text(folder / "s.json"));
   const Names history = lines_of(read_text(folder / "h.csv"));
-  ASSERT_EQ(history[0], "solver,iteration,stop_value,residual,anorm_error");
+  ASSERT_EQ(history[0], "solver,iteration,stop_value,residual,anorm_error,time_ms");
   std::map<std::string, Names> last;
   std::map<std::string, int> count;
   for (std::size_t k = 1; k < history.size(); ++k) {
     const Names fields = fields_of(history[k]);
-    ASSERT_EQ(fields.size(), 5u);
+    ASSERT_EQ(fields.size(), 6u);
+    EXPECT_GE(std::stod(fields[5]), last.contains(fields[0]) ? std::stod(last[fields[0]][5]) : 0.0);
     EXPECT_EQ(std::stoi(fields[1]), count[fields[0]]++);
     last[fields[0]] = fields;
   }
@@ -181,6 +182,7 @@ TEST(Solve, HistoryHoldsEveryIteration) {
     EXPECT_EQ(std::stoi(fields[1]), rows.at(name).at("iterations"));
     EXPECT_LE(std::stod(fields[2]), 1e-6);
     EXPECT_NEAR(std::stod(fields[4]), rows.at(name).at("anorm_error").get<double>(), 1e-3 * std::stod(fields[4]));
+    EXPECT_NEAR(std::stod(fields[5]), rows.at(name).at("total_ms").get<double>(), 1e-4 * std::stod(fields[5]));
   }
   EXPECT_EQ(last.size(), 2u);
 }

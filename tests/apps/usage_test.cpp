@@ -22,7 +22,7 @@ std::vector<std::string> verbs(const WorkFolder& folder) {
 TEST(Usage, EveryVerbHasHelpWithAnExample) {
   const WorkFolder folder;
   const std::vector<std::string> names = verbs(folder);
-  for (const char* verb : {"run", "resume", "check", "dump", "solve", "bench", "export"})
+  for (const char* verb : {"run", "resume", "check", "dump", "solve", "bench", "export", "plot"})
     EXPECT_TRUE(std::ranges::find(names, verb) != names.end()) << verb << " is not listed by --help";
   for (const std::string& verb : names) {
     const ProgramEnd help = taut(folder, {verb, "--help"});
@@ -48,6 +48,10 @@ TEST(Usage, BadUsageIsExitCodeTwo) {
                                                   {"dump", "small.toml", "--out", "d"},
                                                   {"dump", "small.toml", "--step", "0", "--out", "d"},
                                                   {"solve"},
+                                                  {"plot"},
+                                                  {"bench"},
+                                                  {"bench", "flatness", "--k-stretch", "61"},
+                                                  {"bench", "scale", "--nodes", "-4"},
                                                   {"solve", "d", "--matrix", "A.mtx"},
                                                   {"solve", "--matrix", "A.mtx", "--solver", "magic"},
                                                   {"solve", "--matrix", "A.mtx", "--solver", "mpcg", "--all"},

@@ -1,6 +1,7 @@
 #pragma once
 // The benches of `taut bench`. Each prints its table as it goes and returns its rows.
 
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -9,18 +10,34 @@
 namespace taut::app {
 
 struct BenchOptions {
-  std::string scenes = "scenes";     // folder of ball.toml, pinned.toml, drape.toml
+  std::string scenes = "scenes";  // folder of ball.toml, pinned.toml, drape.toml
   int steps = 20;
   double tolerance = 1e-3;
-  std::vector<int> nodes;            // table2: 1681, 6561, 25921; empty: all
-  std::vector<int> stiffnesses;      // 60, 600, 6000; empty: all
+  std::vector<int> nodes;        // table2: 1681, 6561, 25921; empty: all
+  std::vector<int> stiffnesses;  // 60, 600, 6000; empty: all
   int equal_error_every = 5;
+  // flatness and scale
+  bool full = false;
+  std::vector<std::string> methods;  // empty: those worth comparing that this build has
+  double seconds_limit = 20.0;       // after which an iterative method is given up
 };
 
 // Paper, Table 1: MPCG against uPCG on few and on many constraints, 6,561 nodes, h = 3.67 ms.
 std::vector<ReportRow> bench_table1(const BenchOptions& options);
-// Paper, Table 2: a ball hits a sheet; MPCG, CHOLMOD, PARDISO (where built in) and corePCG for three sizes and stiffnesses, semi-implicit Euler and IMEX matrices.
+// Paper, Table 2: a ball hits a sheet; MPCG, CHOLMOD, PARDISO (where built in) and corePCG for three sizes and stiffnesses, semi-implicit
+// Euler and IMEX matrices.
 std::vector<ReportRow> bench_table2(const BenchOptions& options);
+// Time to equal error over stiffness, step, shear and bend; the core's bound beside its eigenvalues and iterations.
+nlohmann::ordered_json bench_flatness(const BenchOptions& options);
+// Time to equal error and memory over the number of nodes.
+nlohmann::ordered_json bench_scale(const BenchOptions& options);
+
+// Of flatness and scale: options.methods, or the default ones that this build knows.
+std::vector<std::string> methods_of(const BenchOptions& options);
+// Nodes along each side of a square sheet. Throws InputError when there is no such whole number.
+int side_of(int nodes);
+// Steps until the first contact, then `more` of them. Throws InputError when a step fails or there is no contact in 1000 steps.
+void run_into_contact(Simulation& simulation, int more);
 
 // One phase of a step, measured alone.
 struct RooflineRow {

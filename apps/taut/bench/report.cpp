@@ -1,6 +1,5 @@
 #include "bench/report.h"
 
-#include "taut/base/file.h"
 #include "taut/step/integrator.h"
 
 namespace taut::app {
@@ -43,12 +42,6 @@ nlohmann::ordered_json to_json(const ReportRow& row, int threads) {
     json["equal_error_ratio"] = c.equal_error_ratio;
   }
   return json;
-}
-
-void write_report(const std::string& path, const MachineFacts& machine, const std::vector<ReportRow>& rows) {
-  nlohmann::ordered_json json{{"machine", to_json(machine)}, {"rows", nlohmann::ordered_json::array()}};
-  for (const ReportRow& row : rows) json["rows"].push_back(to_json(row, machine.threads));
-  write_file(path, json.dump(2) + "\n");
 }
 
 }  // namespace taut::app

@@ -18,7 +18,5 @@ struct ReportRow {
 };
 
 nlohmann::ordered_json to_json(const ReportRow& row, int threads);
-// Writes {"machine": ..., "rows": [...]} atomically.
-void write_report(const std::string& path, const MachineFacts& machine, const std::vector<ReportRow>& rows);
 
 }  // namespace taut::app

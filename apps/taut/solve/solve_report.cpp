@@ -57,7 +57,7 @@ Json solve_json(const std::vector<SolverRow>& rows, const Json& facts) {
   double reference_ms = 0.0;
   for (const SolverRow& row : rows)
     if (row.summary.solver == "cholmod" && row.summary.status.ok()) reference_ms = row.summary.total_ms();
-  Json json{{"machine", to_json(machine_facts(false))}, {"rows", Json::array()}};
+  Json json{{"bench", "solve"}, {"machine", to_json(machine_facts(false))}, {"rows", Json::array()}};
   for (const SolverRow& row : rows) json["rows"].push_back(row_json(row, facts, reference_ms));
   return json;
 }

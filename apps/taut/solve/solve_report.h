@@ -9,7 +9,7 @@ namespace taut::app {
 
 // The table that people read.
 std::string solve_table(const std::vector<SolverRow>& rows);
-// {"machine": ..., "rows": [...]}; `facts`: keys that all rows share (scene, nodes, h, ...).
+// {"bench": "solve", "machine": ..., "rows": [...]}; `facts`: keys that all rows share (scene, nodes, h, ...).
 nlohmann::ordered_json solve_json(const std::vector<SolverRow>& rows, const nlohmann::ordered_json& facts);
 // What meta.json of a dump says about the system: scene, nodes, k_stretch, k_shear, k_bend, h, integrator. {} when it says nothing.
 nlohmann::ordered_json dump_facts(const std::string& meta_file);

@@ -84,12 +84,12 @@ class ScriptWriter {
   }
 
   void axis(const char* name, const Axis& axis) {
-    const bool logarithmic = axis.scale == AxisScale::logarithmic;
     line("set {}label {}", name, gnuplot_string(axis.label));
-    line(logarithmic ? "set logscale {}" : "unset logscale {}", name);
+    line("{} logscale {}", set_or_unset(axis.scale), name);
     line("unset {0}tics\nset {0}tics autofreq format '{1}'", name, "%g");
     line("set {}range [{}:{}] noreverse", name, bound(axis.low), bound(axis.high));
   }
+  static const char* set_or_unset(AxisScale scale) { return scale == AxisScale::logarithmic ? "set" : "unset"; }
   static std::string bound(double value) { return std::isfinite(value) ? fmt::format("{:.12g}", value) : "*"; }
 
   std::string add_file(std::string content) {
@@ -168,11 +168,13 @@ class ScriptWriter {
 
   void heat_map(std::size_t p) {
     const HeatMap& map = figure_.panels[p].heat_map.front();
-    tics("x", map.columns), tics("y", map.rows);
+    const std::size_t columns = static_cast<std::size_t>(std::max(1, figure_.columns));
+    tics("x", p + columns < figure_.panels.size() ? std::vector<std::string>{} : map.columns);
+    tics("y", p % columns > 0 ? std::vector<std::string>{} : map.rows);
     line("set xrange [-0.5:{}]\nset yrange [{}:-0.5]", static_cast<double>(map.columns.size()) - 0.5,
          static_cast<double>(map.rows.size()) - 0.5);
     line("unset grid\nset palette defined ({})", heat_palette(map.diverging));
-    line(map.scale == AxisScale::logarithmic ? "set logscale cb" : "unset logscale cb");
+    line("{} logscale cb", set_or_unset(map.scale));
     line("set cbrange [{:.9g}:{:.9g}]\nset cblabel {}\nset format cb '%g'", colour_range_.low, colour_range_.high,
          gnuplot_string(map.label));
     const PlotBox& bar = layout_.colour_bar;
@@ -186,6 +188,10 @@ class ScriptWriter {
   }
 
   void tics(const char* axis, const std::vector<std::string>& labels) {
+    if (labels.empty()) {
+      line("unset {}tics", axis);
+      return;
+    }
     std::string text;
     for (std::size_t k = 0; k < labels.size(); ++k) text += fmt::format("{}{} {}", k ? ", " : "", gnuplot_string(labels[k]), k);
     line("set {}tics scale 0 ({})", axis, text);

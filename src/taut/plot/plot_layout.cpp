@@ -30,11 +30,11 @@ bool has_heat_map(const Figure& figure) {
   return std::ranges::any_of(figure.panels, [](const Panel& panel) { return !panel.heat_map.empty(); });
 }
 
-// Room left of a frame for the numbers and the label of its y axis.
-double left_room(const Figure& figure) {
+// Room left of a frame for the numbers and the label of its y axis. Heat maps beside one another share the labels of their rows.
+double left_room(const Figure& figure, int column) {
   double width = 62;
   for (const Panel& panel : figure.panels)
-    for (const HeatMap& map : panel.heat_map) width = std::max(width, widest(map.rows) + 24);
+    for (const HeatMap& map : panel.heat_map) width = column > 0 ? 0 : std::max(width, widest(map.rows));
   return width + 24;
 }
 
@@ -43,7 +43,8 @@ int chosen(int wanted, double otherwise) { return wanted > 0 ? wanted : static_c
 int panel_width(const Figure& figure) {
   double width = figure.columns == 1 ? 760 : figure.columns == 2 ? 400 : 290;
   for (const Panel& panel : figure.panels)
-    for (const HeatMap& map : panel.heat_map) width = std::max(width, 62.0 * static_cast<double>(map.columns.size()));
+    for (const HeatMap& map : panel.heat_map)
+      width = std::max(figure.columns > 1 ? 0.0 : width, (figure.columns > 1 ? 50.0 : 62.0) * static_cast<double>(map.columns.size()));
   return chosen(figure.panel_width, width);
 }
 
@@ -63,30 +64,30 @@ int panel_height(const Figure& figure) {
 PlotLayout lay_out(const Figure& figure) {
   const int columns = std::max(1, figure.columns), panels = static_cast<int>(figure.panels.size());
   const int rows = (panels + columns - 1) / columns;
-  const double left = left_room(figure), width = panel_width(figure), height = panel_height(figure);
-  const double legend = legend_width(figure), colours = has_heat_map(figure) ? 110 : 0;
-  const bool titled = std::ranges::any_of(figure.panels, [](const Panel& panel) { return !panel.title.empty(); });
-  const double above = titled ? panel_title_height : 8;
-  // Stacked over one another, only the lowest panel needs its x axis written out.
-  const bool each_axis = columns > 1 || std::ranges::any_of(figure.panels, [](const Panel& panel) { return !panel.x.label.empty(); });
-  const double below = each_axis && rows > 1 && columns > 1 ? axis_height : 10;
-  const double own_legend = figure.shared_legend ? 0 : legend;
+  const double width = panel_width(figure), height = panel_height(figure), legend = legend_width(figure);
+  const bool heat = has_heat_map(figure),
+             titled = std::ranges::any_of(figure.panels, [](const Panel&panel) { return !panel.title.empty(); });
+  const double above = titled ? panel_title_height : 8, own_legend = figure.shared_legend ? 0 : legend, colours = heat ? 110 : 0;
+  // Stacked over one another, and in grids of heat maps, only the lowest panels have their x axis written out.
+  const double below = columns > 1 && !heat ? axis_height : 10;
 
   PlotLayout layout;
+  std::vector<double> left;
+  double across = 0;
+  for (int c = 0; c < columns; ++c) {
+    left.push_back(across + left_room(figure, c));
+    across = left.back() + width + own_legend;
+  }
   const double head = figure.title.empty() ? edge : title_height, foot = (figure.note.empty() ? 4 : note_height) + axis_height - below;
-  layout.width = static_cast<int>(columns * (left + width + own_legend) + (figure.shared_legend ? legend : 0) + colours + edge);
-  layout.width =
-      std::max(layout.width, static_cast<int>(std::max(1.15 * text_width(figure.title), 0.82 * text_width(figure.note)) + 2 * edge));
+  const double texts = std::max(1.15 * text_width(figure.title), 0.82 * text_width(figure.note)) + 2 * edge;
+  layout.width = static_cast<int>(std::max(texts, across + (figure.shared_legend ? legend : 0) + colours + edge));
   layout.height = static_cast<int>(head + rows * (above + height + below) + foot);
   for (int p = 0; p < panels; ++p) {
-    const int row = p / columns, column = p % columns;
-    const double x = column * (left + width + own_legend) + left, top = layout.height - head - row * (above + height + below) - above;
+    const double x = left[static_cast<std::size_t>(p % columns)],
+                 top = layout.height - head - p / columns * (above + height + below) - above;
     layout.axes.push_back({x, top - height, x + width, top});
   }
-  if (colours > 0) {
-    const double x = columns * (left + width + own_legend) + 14;
-    layout.colour_bar = {x, layout.axes.back().bottom, x + 18, layout.axes.front().top};
-  }
+  if (heat) layout.colour_bar = {across + 14, layout.axes.back().bottom, across + 32, layout.axes.front().top};
   return layout;
 }
 

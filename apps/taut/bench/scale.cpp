@@ -1,0 +1,165 @@
+// taut bench scale: time and memory against the number of nodes, and the exponents.
+//
+// The ball touches the sheet from the start, so that a few steps suffice at a million nodes. Mass of a node, stiffnesses and step are those
+// of the paper's largest sheet at every size: what changes is the size. The answer is known at every size without a direct solve: x* is
+// what the step's own solver found, and b is replaced by A x*, whose exact answer x* is.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <map>
+
+#include "bench/benches.h"
+#include "bench/equal_error.h"
+#include "bench/table.h"
+#include "taut/scene/scene_file.h"
+
+namespace taut::app {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int all_sides[] = {41, 81, 161, 321, 641, 1001};
+constexpr int default_sides = 4;
+
+struct Sample {
+  double nodes, ms, memory_MB;
+};
+
+// Of what a new program may take without swapping; 0 when the system does not say.
+double available_MB() {
+  std::ifstream meminfo("/proc/meminfo");
+  for (std::string line; std::getline(meminfo, line);)
+    if (line.starts_with("MemAvailable:")) return std::stod(line.substr(13)) / 1024.0;
+  return 0.0;
+}
+
+// Slope of log(value) over log(nodes), least squares; NaN with fewer than two samples.
+double exponent(const std::vector<Sample>& samples, double Sample::*value) {
+  double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
+  for (const Sample& sample : samples) {
+    if (!(sample.*value > 0.0)) continue;
+    const double x = std::log(sample.nodes), y = std::log(sample.*value);
+    n += 1, sx += x, sy += y, sxx += x * x, sxy += x * y;
+  }
+  return n < 2 ? NAN : (n * sxy - sx * sy) / (n * sxx - sx * sx);
+}
+
+std::string exponent_text(double value) { return std::isfinite(value) ? fmt::format("n^{:.2f}", value) : "-"; }
+
+class Scale {
+ public:
+  explicit Scale(const BenchOptions& options)
+      : options_(options),
+        methods_(methods_of(options)),
+        table_({"nodes", "method", "to 1e-3 ms", "to 1e-6 ms", "set-up", "memory MB", "A-error", "remark"}) {}
+
+  Json run() {
+    std::vector<int> sizes = options_.nodes;
+    if (sizes.empty())
+      for (const int side : std::span(all_sides).first(options_.full ? std::size(all_sides) : default_sides)) sizes.push_back(side * side);
+    for (const int nodes : sizes) measure_size(side_of(nodes));
+    fmt::print("{}\n", table_.text());
+    print_exponents();
+    return std::move(rows_);
+  }
+
+ private:
+  void measure_size(int side) {
+    const int nodes = side * side;
+    fmt::print(stderr, "scale: {} nodes ...\n", nodes);
+    const std::vector<std::string> settings{fmt::format("cloth.grid.nodes=[{0},{0}]", side),
+                                            "cloth.k_stretch=6000",
+                                            "time.step=3.67e-3",
+                                            "time.frames=100000",
+                                            "solver.name=upcg:ic0_core",
+                                            "solver.tolerance=1e-7",
+                                            "solid.translation=[0,-0.2,0.5]"};
+    Simulation simulation(read_scene(options_.scenes + "/ball.toml", settings));
+    run_into_contact(simulation, 2);
+    bool measured = false;
+    simulation.on_solved = [&](Simulation& s, const SolveSummary&) {
+      if (!measured) measure_system(s, nodes);
+      measured = true;
+    };
+    StepRecord record;
+    simulation.step(record);
+  }
+
+  void measure_system(Simulation& simulation, int nodes) {
+    LinearSystem system = simulation.stepper().system();
+    const auto answer = flat(simulation.stepper().unknown());
+    const std::vector<double> reference(answer.begin(), answer.end());
+    std::vector<double> rhs(reference.size());
+    multiply(*system.matrix, reference, rhs);
+    system.rhs = rhs;
+    system.guess = {};
+    const SpringMaterial& material = simulation.scene().cloths[0].material;
+    for (const std::string& method : methods_) {
+      Json row{{"scene", "ball"},
+               {"nodes", nodes},
+               {"k_stretch", material.k_stretch},
+               {"k_shear", material.k_shear},
+               {"k_bend", material.k_bend},
+               {"h", simulation.scene().time.step},
+               {"integrator", "semi_implicit_euler"}};
+      if (const std::string reason = too_much(method, nodes); !reason.empty()) {
+        table_.add({fmt::format("{}", nodes), method, "-", "-", "-", "-", "-", reason});
+        continue;
+      }
+      fmt::print(stderr, "scale:   {}\n", method);
+      const EqualErrorResult result = measure_equal_error(system, method, reference, options_.seconds_limit);
+      put(row, result);
+      rows_.push_back(std::move(row));
+      note(nodes, result);
+    }
+    table_.add_rule();
+  }
+
+  // What the sizes so far let expect, so that a bench neither swaps nor runs for hours: the reason to leave a method out, or nothing.
+  std::string too_much(const std::string& method, double nodes) const {
+    const auto found = samples_.find(method);
+    if (found == samples_.end() || found->second.empty()) return "";
+    const Sample& last = found->second.back();
+    const double memory = last.memory_MB * std::pow(nodes / last.nodes, 1.25), seconds = 1e-3 * last.ms * std::pow(nodes / last.nodes, 1.5);
+    if (const double room = available_MB(); room > 0.0 && memory > 0.7 * room)
+      return fmt::format("left out: would take about {:.0f} GB", memory / 1000.0);
+    if (seconds > options_.seconds_limit) return fmt::format("left out: would take about {:.0f} s", seconds);
+    return "";
+  }
+
+  void note(int nodes, const EqualErrorResult& result) {
+    samples_[result.solver].push_back({double(nodes), result.to[0].ms, result.summary.memory_bytes / 1e6});
+    table_.add({fmt::format("{}", nodes), result.solver, text_of(result.to[0]), text_of(result.to[1]),
+                fmt::format("{:.1f}", result.summary.total_ms() - result.summary.solve_ms),
+                fmt::format("{:.1f}", result.summary.memory_bytes / 1e6),
+                result.anorm_error >= 0 ? fmt::format("{:.1e}", result.anorm_error) : "-", result.status.message});
+  }
+
+  void print_exponents() const {
+    TextTable table({"method", "time to 1e-3", "memory"});
+    for (const std::string& method : methods_)
+      if (const auto found = samples_.find(method); found != samples_.end())
+        table.add(
+            {method, exponent_text(exponent(found->second, &Sample::ms)), exponent_text(exponent(found->second, &Sample::memory_MB))});
+    fmt::print(
+        "Fitted over all sizes (n nodes):\n{}\nTimes: ms (#iterations), set-up included. Mass of a node, stiffnesses and step are the same "
+        "at all sizes.\n",
+        table.text());
+  }
+
+  BenchOptions options_;
+  std::vector<std::string> methods_;
+  TextTable table_;
+  std::map<std::string, std::vector<Sample>> samples_;
+  Json rows_ = Json::array();
+};
+
+}  // namespace
+
+Json bench_scale(const BenchOptions& options) { return Scale(options).run(); }
+
+}  // namespace taut::app
