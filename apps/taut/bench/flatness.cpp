@@ -172,9 +172,10 @@ class Flatness {
         "A-norm error of 1e-3 / 1e-6,\n"
         "set-up included; '-': not reached in {:g} s. rho, eigenvalues of P^-1 A (Lanczos), bound and its: of core_pcg, for 1e-3.\n",
         side_ * side_, options_.seconds_limit);
-    fmt::print(bound_broken_ == 0 ? "The bound (eigenvalues within 1/(1 + rho) .. 2, iterations) held in all {1} cells.\n"
-                                  : "THE BOUND WAS BROKEN in {} of {} cells.\n",
-               bound_broken_, done_);
+    if (bound_broken_ == 0)
+      fmt::print("The bound (eigenvalues within 1/(1 + rho) .. 2, iterations) held in all {} cells.\n", done_);
+    else
+      fmt::print("THE BOUND WAS BROKEN in {} of {} cells.\n", bound_broken_, done_);
   }
 
   BenchOptions options_;

@@ -48,7 +48,7 @@ class ScriptWriter {
     for (std::size_t p = 0; p < figure_.panels.size(); ++p) {
       const Panel& panel = figure_.panels[p];
       place(p);
-      axis("x", panel.x), axis("y", panel.y);
+      axis("x", panel.x, !is_stacked_above(p)), axis("y", panel.y, true);
       panel.heat_map.empty() ? curves(p) : heat_map(p);
     }
     line("unset multiplot\nset output");
@@ -83,10 +83,15 @@ class ScriptWriter {
     line("set title {} offset 0,-0.5 font ',11.5'", gnuplot_string(figure_.panels[p].title));
   }
 
-  void axis(const char* name, const Axis& axis) {
+  // Of panels over one another with a common x axis only the lowest writes its numbers.
+  bool is_stacked_above(std::size_t p) const {
+    return figure_.columns <= 1 && p + 1 < figure_.panels.size() && figure_.panels[p].x.label.empty();
+  }
+
+  void axis(const char* name, const Axis& axis, bool numbers) {
     line("set {}label {}", name, gnuplot_string(axis.label));
     line("{} logscale {}", set_or_unset(axis.scale), name);
-    line("unset {0}tics\nset {0}tics autofreq format '{1}'", name, "%g");
+    line("unset {0}tics\nset {0}tics autofreq nomirror out scale 0.6 tc rgb '#333333' format '{1}'", name, numbers ? "%g" : "");
     line("set {}range [{}:{}] noreverse", name, bound(axis.low), bound(axis.high));
   }
   static const char* set_or_unset(AxisScale scale) { return scale == AxisScale::logarithmic ? "set" : "unset"; }
