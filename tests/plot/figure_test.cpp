@@ -36,10 +36,9 @@ Figure one_curve(Curve curve, Axis x = {}, Axis y = {}) {
 
 // The points of the first path drawn in a colour, in the SVG's units (y downwards).
 std::vector<PlotPoint> path_in(const std::string& svg, const std::string& rgb) {
-  const std::regex group("<g [^>]*stroke=\"" + rgb + "\"[^>]*>|stroke='" + rgb + "'  ?d='([^']*)'", std::regex::icase);
-  for (auto m = std::sregex_iterator(svg.begin(), svg.end(), group); m != std::sregex_iterator(); ++m) {
-    if (!(*m)[1].matched) continue;
-    std::string d = (*m)[1];
+  const std::regex path("<path stroke='" + rgb + "'[^>]*d='([^']*)'");
+  for (auto m = std::sregex_iterator(svg.begin(), svg.end(), path); m != std::sregex_iterator(); ++m) {
+    const std::string d = (*m)[1];
     std::vector<PlotPoint> points;
     const std::regex number("(-?[0-9.]+),(-?[0-9.]+)");
     for (auto n = std::sregex_iterator(d.begin(), d.end(), number); n != std::sregex_iterator(); ++n)
