@@ -12,6 +12,7 @@
 namespace taut::app {
 
 std::vector<std::string> methods_of(const BenchOptions& options) {
+  for (const std::string& name : options.methods) make_solver({.name = name});  // throws for one that there is not
   if (!options.methods.empty()) return options.methods;
   const std::vector<std::string> known = solver_names();
   std::vector<std::string> methods;
