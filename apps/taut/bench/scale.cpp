@@ -14,6 +14,7 @@
 #include "bench/benches.h"
 #include "bench/equal_error.h"
 #include "bench/table.h"
+#include "taut/base/error.h"
 #include "taut/scene/scene_file.h"
 
 namespace taut::app {
@@ -50,6 +51,29 @@ double exponent(const std::vector<Sample>& samples, double Sample::*value) {
 
 std::string exponent_text(double value) { return std::isfinite(value) ? fmt::format("n^{:.2f}", value) : "-"; }
 
+// Of a square grid of another size, bilinearly.
+std::vector<Vec3> interpolated(const std::vector<Vec3>& values, int from, int to) {
+  std::vector<Vec3> result;
+  const double scale = static_cast<double>(from - 1) / (to - 1);
+  const auto cell = [&](int k) { return std::min(static_cast<int>(k * scale), from - 2); };
+  const auto value = [&](int i, int j) { return values[static_cast<std::size_t>(j * from + i)]; };
+  for (int j = 0; j < to; ++j)
+    for (int i = 0; i < to; ++i) {
+      const int ci = cell(i), cj = cell(j);
+      const double s = i * scale - ci, t = j * scale - cj;
+      result.push_back((1 - t) * ((1 - s) * value(ci, cj) + s * value(ci + 1, cj)) +
+                       t * ((1 - s) * value(ci, cj + 1) + s * value(ci + 1, cj + 1)));
+    }
+  return result;
+}
+
+State interpolated(const State& state, int from, int to) {
+  State result;
+  result.time = state.time;
+  result.x = interpolated(state.x, from, to), result.v = interpolated(state.v, from, to);
+  return result;
+}
+
 class Scale {
  public:
   explicit Scale(const BenchOptions& options)
@@ -61,6 +85,10 @@ class Scale {
     std::vector<int> sizes = options_.nodes;
     if (sizes.empty())
       for (const int side : std::span(all_sides).first(options_.full ? std::size(all_sides) : default_sides)) sizes.push_back(side * side);
+    for (const int nodes : sizes) side_of(nodes);
+    fmt::print(stderr, "scale: {} nodes into contact ...\n", start_side * start_side);
+    coarse_ = std::make_unique<Simulation>(sheet(start_side));
+    run_into_contact(*coarse_, 12);
     for (const int nodes : sizes) measure_size(side_of(nodes));
     fmt::print("{}\n", table_.text());
     print_exponents();
@@ -68,24 +96,31 @@ class Scale {
   }
 
  private:
-  void measure_size(int side) {
-    const int nodes = side * side;
-    fmt::print(stderr, "scale: {} nodes ...\n", nodes);
+  static constexpr int start_side = 41, own_steps = 2;
+
+  Simulation sheet(int side) const {
     const std::vector<std::string> settings{fmt::format("cloth.grid.nodes=[{0},{0}]", side),
                                             "cloth.k_stretch=6000",
                                             "time.step=3.67e-3",
                                             "time.frames=100000",
                                             "solver.name=upcg:ic0_core",
-                                            "solver.tolerance=1e-7",
-                                            "solid.translation=[0,-0.2,0.5]"};
-    Simulation simulation(read_scene(options_.scenes + "/ball.toml", settings));
-    run_into_contact(simulation, 2);
+                                            "solver.tolerance=1e-7"};
+    return Simulation(read_scene(options_.scenes + "/ball.toml", settings));
+  }
+
+  void measure_size(int side) {
+    const int nodes = side * side;
+    fmt::print(stderr, "scale: {} nodes ...\n", nodes);
+    Simulation simulation = sheet(side);
+    simulation.restore(interpolated(coarse_->state(), start_side, side), {}, coarse_->steps_done());
+    StepRecord record;
+    for (int step = 0; step < own_steps; ++step)
+      if (const Status status = simulation.step(record); !status.ok()) throw InputError(status.message);
     bool measured = false;
     simulation.on_solved = [&](Simulation& s, const SolveSummary&) {
       if (!measured) measure_system(s, nodes);
       measured = true;
     };
-    StepRecord record;
     simulation.step(record);
   }
 
@@ -155,6 +190,7 @@ class Scale {
   std::vector<std::string> methods_;
   TextTable table_;
   std::map<std::string, std::vector<Sample>> samples_;
+  std::unique_ptr<Simulation> coarse_;
   Json rows_ = Json::array();
 };
 

@@ -47,6 +47,7 @@ class StatsPanels {
   void add(const char* label, AxisScale scale, const std::vector<Wanted>& wanted) {
     Panel panel;
     panel.y = {label, scale};
+    if (scale == AxisScale::linear) panel.y.low = 0.0;
     for (const auto& [column, name] : wanted) {
       Curve curve = curve_of(column, name);
       if (!curve.points.empty()) panel.curves.push_back(std::move(curve));

@@ -15,6 +15,8 @@ using Json = nlohmann::ordered_json;
 
 std::string error_text(double error) { return error < 0.0 ? "" : fmt::format("{:.2e}", error); }
 
+std::string ms_text(double ms) { return ms < 1.0 ? fmt::format("{:.4f}", ms) : fmt::format("{:.2f}", ms); }
+
 // JSON has no NaN and no infinity.
 void put_finite(Json& json, const char* key, double value) {
   if (std::isfinite(value)) json[key] = value;
@@ -47,9 +49,9 @@ Json row_json(const SolverRow& row, const Json& facts, double reference_ms) {
 std::string solve_table(const std::vector<SolverRow>& rows) {
   TextTable table({"solver", "status", "iterations", "setup ms", "solve ms", "solves", "memory MB", "residual", "A-norm error"});
   for (const auto& [s, error, solves, options] : rows)
-    table.add({s.solver, name_of(s.status.outcome), std::to_string(s.iterations), fmt::format("{:.2f}", setup_ms(s)),
-               fmt::format("{:.2f}", s.solve_ms), std::to_string(solves), fmt::format("{:.2f}", s.memory_bytes / 1e6),
-               fmt::format("{:.2e}", s.relative_residual), error_text(error)});
+    table.add({s.solver, name_of(s.status.outcome), std::to_string(s.iterations), ms_text(setup_ms(s)), ms_text(s.solve_ms),
+               std::to_string(solves), fmt::format("{:.2f}", s.memory_bytes / 1e6), fmt::format("{:.2e}", s.relative_residual),
+               error_text(error)});
   return table.text();
 }
 
