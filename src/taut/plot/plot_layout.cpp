@@ -45,6 +45,7 @@ int panel_width(const Figure& figure) {
   for (const Panel& panel : figure.panels)
     for (const HeatMap& map : panel.heat_map)
       width = std::max(figure.columns > 1 ? 0.0 : width, (figure.columns > 1 ? 50.0 : 62.0) * static_cast<double>(map.columns.size()));
+  for (const Panel& panel : figure.panels) width = std::max(width, 1.15 * text_width(panel.title));
   return chosen(figure.panel_width, width);
 }
 
@@ -79,7 +80,7 @@ PlotLayout lay_out(const Figure& figure) {
     across = left.back() + width + own_legend;
   }
   const double head = figure.title.empty() ? edge : title_height, foot = (figure.note.empty() ? 4 : note_height) + axis_height - below;
-  const double texts = std::max(1.15 * text_width(figure.title), 0.82 * text_width(figure.note)) + 2 * edge;
+  const double texts = std::max(1.5 * text_width(figure.title), 0.82 * text_width(figure.note)) + 2 * edge;
   layout.width = static_cast<int>(std::max(texts, across + (figure.shared_legend ? legend : 0) + colours + edge));
   layout.height = static_cast<int>(head + rows * (above + height + below) + foot);
   for (int p = 0; p < panels; ++p) {
