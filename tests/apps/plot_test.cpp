@@ -25,7 +25,7 @@ int count_of(const std::string& text, const std::string& part) {
 TEST(Plot, DrawsARunOverTime) {
   const WorkFolder folder;
   folder.file("small.toml", small_scene());
-  ASSERT_EQ(taut(folder, {"run", "small.toml", "--quiet"}).exit_code, 0);
+  ASSERT_EQ(taut(folder, {"run", "small.toml", "--quiet", "--no-picture"}).exit_code, 0);
   const ProgramEnd end = taut(folder, {"plot", "out/small"});
   ASSERT_EQ(end.exit_code, 0) << end.err;
   EXPECT_EQ(end.out, "out/small/stats.svg\n");
@@ -37,13 +37,13 @@ TEST(Plot, DrawsARunOverTime) {
   EXPECT_EQ(read_text(folder / "p/s.png").substr(1, 3), "PNG");
   EXPECT_EQ(names_in(folder / "p"), Names{"s.png"});
   // The drawing belongs to the result: a new run may take its place.
-  EXPECT_EQ(taut(folder, {"run", "small.toml", "--quiet"}).exit_code, 0);
+  EXPECT_EQ(taut(folder, {"run", "small.toml", "--quiet", "--no-picture"}).exit_code, 0);
 }
 
 TEST(Plot, DrawsWhatThereIsOfARunThatHasNotEnded) {
   const WorkFolder folder;
   folder.file("small.toml", small_scene());
-  ASSERT_EQ(taut(folder, {"run", "small.toml", "--quiet"}).exit_code, 0);
+  ASSERT_EQ(taut(folder, {"run", "small.toml", "--quiet", "--no-picture"}).exit_code, 0);
   std::filesystem::remove(folder / "out/small/summary.json");
   const std::string stats = read_text(folder / "out/small/stats.csv");
   folder.file("out/small/stats.csv", stats.substr(0, stats.size() - 9));
