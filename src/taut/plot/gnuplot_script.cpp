@@ -115,7 +115,7 @@ class ScriptWriter {
     const char* colour = colours[number % colours.size()];
     const char* dash = dashes[number / colours.size() % dashes.size()];
     const int mark = marks[number % marks.size()];
-    if (style == CurveStyle::points) return fmt::format("with points lc rgb '{}' pt {} ps 1.1", colour, mark);
+    if (style == CurveStyle::points) return fmt::format("with points lc rgb '{}' pt {} ps 1.5 lw 1.5", colour, mark);
     const std::string line = fmt::format("lc rgb '{}' dt {} lw 1.8", colour, dash);
     if (style == CurveStyle::line) return "with lines " + line;
     // On long curves marks all along would be a smear.

@@ -32,7 +32,7 @@ bool has_heat_map(const Figure& figure) {
 
 // Room left of a frame for the numbers and the label of its y axis. Heat maps beside one another share the labels of their rows.
 double left_room(const Figure& figure, int column) {
-  double width = 62;
+  double width = 76;
   for (const Panel& panel : figure.panels)
     for (const HeatMap& map : panel.heat_map) width = column > 0 ? 0 : std::max(width, widest(map.rows));
   return width + 24;
