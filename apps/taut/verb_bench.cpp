@@ -103,13 +103,14 @@ CLI::App* add_sweep(CLI::App& parent, const char* name, const char* description,
                     int& exit_code) {
   const auto [verb, arguments] = add_bench(parent, name, description, bench, exit_code);
   BenchOptions& options = arguments->options;
-  verb->add_flag("--full", options.full, "All of it: takes much longer than ten minutes");
+  verb->add_flag("--full", options.full, "All sizes and cells: takes much longer than ten minutes");
   verb->add_option("--nodes", options.nodes, sizes)->delimiter(',')->check(CLI::PositiveNumber);
   verb->add_option("--solver", options.methods, "Only these solvers (default: those worth comparing)")->delimiter(',');
   verb->add_option("--time-limit", options.seconds_limit, "Seconds after which a method is given up (default 20)")
       ->check(CLI::PositiveNumber);
   if (std::string(name) == "flatness")
-    verb->add_option("--k-stretch", options.stiffnesses, "Only these of 60, 600, ..., 6000000 N/m")
+    verb->add_option("--k-stretch", options.stiffnesses,
+                     "Only these of 60, 600, ..., 6000000 N/m (default 60, 6000, 6000000; with --full all)")
         ->delimiter(',')
         ->check(CLI::IsMember({60, 600, 6000, 60000, 600000, 6000000}));
   return verb;

@@ -33,9 +33,9 @@ constexpr double all_k_stretch[] = {60, 600, 6e3, 6e4, 6e5, 6e6}, all_h[] = {1e-
 constexpr std::pair<double, double> all_shear_bend[] = {{0.3, 0.05}, {30, 5}, {600, 50}};
 
 std::vector<FlatnessCell> cells_of(const BenchOptions& options) {
-  const auto wanted = [&](double k) {
-    return options.stiffnesses.empty() || std::ranges::any_of(options.stiffnesses, [&](int w) { return std::abs(w - k) < 0.5; });
-  };
+  std::vector<int> chosen = options.stiffnesses;
+  if (chosen.empty() && !options.full) chosen = {60, 6000, 6000000};
+  const auto wanted = [&](double k) { return chosen.empty() || std::ranges::any_of(chosen, [&](int w) { return std::abs(w - k) < 0.5; }); };
   std::vector<FlatnessCell> cells;
   for (const double h : all_h)
     for (const auto& [shear, bend] : all_shear_bend)
