@@ -13,6 +13,9 @@ namespace {
 using Json = nlohmann::json;
 using Names = std::vector<std::string>;
 
+// By value: what a range-for runs over must outlive its expression.
+Json rows_of(const std::string& report) { return Json::parse(report).at("rows"); }
+
 // All solvers on a dump of one step: converged, A-norm error below 1e-6 at tolerance 1e-9.
 void expect_one_answer(const WorkFolder& folder, const std::string& scene, const Names& settings, const char* step, int pinned_dofs,
                        bool in_contact) {
@@ -65,7 +68,7 @@ TEST_P(OthersMatrices, ResidualOrAnHonestNo) {
                                        "--time-limit", "10", "--repeat", "1", "--json"});
   bool all_converged = true;
   int converged = 0;
-  for (const Json& row : Json::parse(end.out).at("rows")) {
+  for (const Json& row : rows_of(end.out)) {
     const std::string solver = row.at("solver"), what = solver + " on " + GetParam();
     const bool ok = row.at("status") == "converged";
     all_converged = all_converged && ok;
@@ -133,7 +136,7 @@ TEST(SolveRefusal, SingularIsReportedByEverySolver) {
   folder.file("b.mtx", "%%MatrixMarket matrix array real general\n6 1\n1\n1\n1\n1\n1\n2\n");
   const ProgramEnd end = taut(folder, {"solve", "--matrix", "A.mtx", "--rhs", "b.mtx", "--all", "--json"});
   EXPECT_EQ(end.exit_code, 1);
-  for (const Json& row : Json::parse(end.out).at("rows")) {
+  for (const Json& row : rows_of(end.out)) {
     EXPECT_NE(row.at("status"), "converged") << row.dump();
     EXPECT_NE(row.value("message", ""), "") << row.dump();
   }
@@ -146,7 +149,7 @@ TEST(SolveRefusal, IndefiniteIsReportedByEverySolverThatNeedsDefiniteness) {
   folder.file("b.mtx", "%%MatrixMarket matrix array real general\n2 1\n1\n-1\n");
   const ProgramEnd end = taut(folder, {"solve", "--matrix", "A.mtx", "--rhs", "b.mtx", "--all", "--json"});
   EXPECT_EQ(end.exit_code, 1);
-  for (const Json& row : Json::parse(end.out).at("rows")) {
+  for (const Json& row : rows_of(end.out)) {
     if (row.at("solver").get<std::string>().starts_with("eq10")) continue;  // BiCGSTAB asks for no definiteness
     EXPECT_NE(row.at("status"), "converged") << row.dump();
     EXPECT_NE(row.value("message", ""), "") << row.dump();
