@@ -198,7 +198,8 @@ TEST(Solve, MatricesOfOthers) {
   const WorkFolder folder;
   for (const Foreign& foreign :
        {Foreign{"1138_bus.mtx", 1e-3}, {"LFAT5.mtx", 1e-3}, {"bcsstk13.mtx.gz", 1e-2}, {"ani1.mtx", 1e-4}, {"isai_spd.mtx", 1e-3}}) {
-    const ProgramEnd end = taut(folder, {"solve", "--matrix", (*data / "matrices" / foreign.file).string(), "--all", "--json"});
+    const ProgramEnd end = taut(folder, {"solve", "--matrix", (*data / "matrices" / foreign.file).string(), "--all", "--repeat", "1",
+                                         "--time-limit", "3", "--json"});
     bool all_converged = true;
     for (const auto& [name, row] : rows_by_solver(end.out)) {
       const std::string status = row.at("status"), what = foreign.file + " " + name + " " + status;
