@@ -13,6 +13,7 @@
 #include "taut/base/error.h"
 #include "taut/base/file.h"
 #include "taut/plot/gnuplot_script.h"
+#include "taut/plot/plot_layout.h"
 
 namespace taut {
 namespace {
@@ -143,6 +144,23 @@ TEST_F(FigureFile, HeatMapColoursCellsInOrder) {
   // The lowest, middle and highest colour of viridis, and the grey of the empty cell.
   for (const char* colour : {"rgb( 68,   1,  84)", "rgb(253, 231,  37)", "rgb(228, 228, 228)"})
     EXPECT_NE(svg.find(colour), std::string::npos) << colour;
+}
+
+TEST_F(FigureFile, PanelsLeaveRoomForTheAxesThatAreWritten) {
+  const auto gap = [](const char* first_label, int columns) {
+    Figure figure{.title = "", .note = "", .panels = {{}, {}, {}, {}}, .columns = columns};
+    figure.panels[0].x.label = first_label, figure.panels[3].x.label = "time";
+    const PlotLayout layout = lay_out(figure);
+    for (const PlotBox& box : layout.axes) {
+      EXPECT_TRUE(box.left > 50 && box.bottom > 40 && box.right < layout.width && box.top < layout.height);
+      EXPECT_TRUE(box.right > box.left + 100 && box.top > box.bottom + 100);
+    }
+    return layout.axes[0].bottom - layout.axes[static_cast<std::size_t>(columns)].top;
+  };
+  EXPECT_GT(gap("time", 1), 45);
+  EXPECT_GT(gap("time", 2), 45);
+  EXPECT_GT(gap("", 1), 5);
+  EXPECT_LT(gap("", 1), 25);
 }
 
 TEST_F(FigureFile, PngHasTheSizeOfTheLayout) {

@@ -38,6 +38,12 @@ double left_room(const Figure& figure, int column) {
   return width + 24;
 }
 
+// Panels over one another, of which only the lowest has its x axis written out; so have grids of heat maps.
+bool is_stack(const Figure& figure) {
+  return figure.columns <= 1 && std::none_of(figure.panels.begin(), figure.panels.end() - (figure.panels.empty() ? 0 : 1),
+                                             [](const Panel& panel) { return !panel.x.label.empty(); });
+}
+
 int chosen(int wanted, double otherwise) { return wanted > 0 ? wanted : static_cast<int>(otherwise); }
 
 int panel_width(const Figure& figure) {
@@ -69,8 +75,7 @@ PlotLayout lay_out(const Figure& figure) {
   const bool heat = has_heat_map(figure),
              titled = std::ranges::any_of(figure.panels, [](const Panel&panel) { return !panel.title.empty(); });
   const double above = titled ? panel_title_height : 8, own_legend = figure.shared_legend ? 0 : legend, colours = heat ? 110 : 0;
-  // Stacked over one another, and in grids of heat maps, only the lowest panels have their x axis written out.
-  const double below = columns > 1 && !heat ? axis_height : 10;
+  const double below = heat || is_stack(figure) ? 10 : axis_height;
 
   PlotLayout layout;
   std::vector<double> left;
