@@ -114,7 +114,7 @@ void put(nlohmann::ordered_json& row, const EqualErrorResult& result) {
   row["total_ms"] = s.total_ms();
   if (result.anorm_error >= 0.0) row["anorm_error"] = result.anorm_error;
   row["memory_MB"] = s.memory_bytes / 1e6;
-  row["precision"] = "double";
+  row["precision"] = s.precision;
   for (std::size_t e = 0; e < wanted_errors.size(); ++e) {
     if (!result.to[e].reached()) continue;
     row["to_" + name_of_error(e) + "_ms"] = result.to[e].ms;
