@@ -9,6 +9,7 @@
 #include "taut/constraint/reduction.h"
 #include "taut/force/assembler.h"
 #include "taut/force/cloth_springs.h"
+#include "taut/solve/core_spectrum.h"
 
 namespace taut::test {
 namespace {
@@ -129,6 +130,14 @@ TEST(CoreBound, HoldsForTheEigenvalues) {
       const double rounding = 1e-9;
       EXPECT_LE(lambda.maxCoeff(), 2.0 + rounding);
       EXPECT_GE(lambda.minCoeff(), 1.0 / (1.0 + sheet.rho) - rounding);
+      LinearSystem system = sheet.c.system();
+      system.rho = sheet.rho;
+      const CoreSpectrum measured = measure_core_spectrum(system, 1e-3);
+      EXPECT_NEAR(measured.smallest, lambda.minCoeff(), 1e-5 * lambda.minCoeff());
+      EXPECT_NEAR(measured.largest, lambda.maxCoeff(), 1e-5 * lambda.maxCoeff());
+      EXPECT_DOUBLE_EQ(measured.bound, 2.0 * (1.0 + sheet.rho));
+      EXPECT_LE(measured.iterations, measured.bound_iterations);
+      EXPECT_GT(measured.iterations, 0);
       // The remainder is really there: P is not A.
       if (!constrained) {
         EXPECT_GT(lambda.maxCoeff(), 1.0 + 0.01 * std::min(1.0, sheet.rho));
@@ -145,9 +154,12 @@ TEST(CoreBound, HoldsForTheIterations) {
         Sheet sheet(setting, random);
         if (constrained) sheet.constrain(random);
         std::vector<double> x(sheet.c.b.size());
-        const SolveSummary summary = make_solver(solver_options("core_pcg", tolerance))->solve(sheet.c.system(), x);
+        LinearSystem system = sheet.c.system();
+        system.rho = sheet.rho;
+        const SolveSummary summary = make_solver(solver_options("core_pcg", tolerance))->solve(system, x);
         ASSERT_TRUE(summary.status.ok()) << summary.status.message;
         const int bound = core_iteration_bound(sheet.rho, summary.start_value, tolerance);
+        EXPECT_EQ(summary.bound_iterations, bound);
         EXPECT_LE(summary.iterations, bound);
         EXPECT_GT(summary.iterations, 0);
         // For a small remainder the bound is not only true but of use.

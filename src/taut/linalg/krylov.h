@@ -18,11 +18,18 @@ class LinearOperator {
   virtual double multiply_dot(std::span<const double> x, std::span<double> y) const = 0;
 };
 
+// What a run of conjugate gradients tells about the spectrum of M_p⁻¹ A (linalg/lanczos.h).
+struct CgCoefficients {
+  std::vector<double> alpha, beta;  // α_k = δ_k/(cᵀAc), β_k = δ_(k+1)/δ_k, one of each an iteration
+};
+
 struct KrylovOptions {
   double relative_tolerance = 1e-3;
   int max_iterations = 1000;
   // Called after every iteration with its number, the stop test's value sqrt(δ/δ0) and the iterate; for histories. May be empty.
   std::function<void(int, double, std::span<const double>)> observer;
+  // pcg: overwritten with the run's coefficients, unless null.
+  CgCoefficients* coefficients = nullptr;
 };
 
 struct KrylovResult {

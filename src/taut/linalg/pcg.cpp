@@ -15,6 +15,7 @@ KrylovResult pcg(const LinearOperator& a, const Preconditioner& m, std::span<con
   assert(b.size() == n && x.size() == n);
   KrylovResult result;
   std::vector<double> r(n), s(n), c(n), q(n);
+  if (options.coefficients) *options.coefficients = {};
 
   m.apply(b, s);
   const double delta0 = dot(b, s);
@@ -41,6 +42,7 @@ KrylovResult pcg(const LinearOperator& a, const Preconditioner& m, std::span<con
     delta = dot(r, s);
     scale_add(delta / previous, s, c);
     ++result.iterations;
+    if (options.coefficients) options.coefficients->alpha.push_back(alpha), options.coefficients->beta.push_back(delta / previous);
     if (options.observer) options.observer(result.iterations, relative(delta), x);
     if (!std::isfinite(delta)) break;
   }

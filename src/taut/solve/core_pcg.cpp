@@ -4,26 +4,14 @@
 
 #include "taut/base/parallel.h"
 #include "taut/base/timer.h"
+#include "taut/linalg/factor_preconditioner.h"
+#include "taut/solve/core_bound.h"
 #include "taut/solve/preconditioner_choice.h"
 #include "taut/solve/reduced_pcg.h"
 
 namespace taut {
 
 namespace {
-
-// M_p⁻¹ r by the factor, in the unknowns' own order or in the factor's.
-class FactorPreconditioner : public Preconditioner {
- public:
-  FactorPreconditioner(SparseCholesky& factor, bool permuted) : factor_(factor), permuted_(permuted) {}
-  Status update(const BlockCsr&) override { return {}; }
-  void apply(std::span<const double> r, std::span<double> z) const override {
-    permuted_ ? factor_.solve_permuted(r, z) : factor_.solve(r, z);
-  }
-
- private:
-  SparseCholesky& factor_;
-  bool permuted_;
-};
 
 // Π A Πᵀ as a scalar matrix: row k is unknown perm[k]. Columns within a row stay in A's order, which products do not mind.
 BlockCsr permuted(const BlockCsr& a, std::span<const Index> perm) {
@@ -89,6 +77,7 @@ void CorePcg::run(const LinearSystem& system, std::span<double> x, SolveSummary&
     reduced_pcg(system, reduced_, m, options_.tolerance, iteration_limit(reduced_.matrix().dofs()), observer, x, summary);
   }
   summary.solve_ms = timer.lap();
+  if (system.rho >= 0.0) summary.bound_iterations = core_iteration_bound(system.rho, summary.start_value, options_.tolerance);
   summary.memory_bytes = static_cast<double>(reduced_.matrix().bytes() + core_.matrix().bytes()) + cholesky_->statistics().bytes;
 }
 

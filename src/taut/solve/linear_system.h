@@ -10,6 +10,8 @@
 //   guess        3N doubles, last step's x, or empty; iterative methods start at S guess + (I-S) z (Ascher & Boxerman 2003)
 //   positions    3N doubles, m, where the nodes are; or empty. Only multigrid uses them: for the rotations in its near-null space
 //   core         one byte per block of A, 1 for the blocks of the matrix core (paper Section 6); empty: only block-diagonal blocks
+//   rho          ρ of MATH.md section 5 for that core: what the blocks outside it add to the diagonal, relative to the masses; bounds
+//                corePCG's iterations. Negative: not known
 // Units: A kg, b N s, x m/s when x is a velocity change; A kg, b kg m, x m when it is a displacement (BDF2).
 
 #include <cstdint>
@@ -30,6 +32,7 @@ struct LinearSystem {
   std::span<const double> guess;
   std::span<const double> positions;
   std::span<const std::uint8_t> core;
+  double rho = -1.0;
 };
 
 // What a solve did. Times in milliseconds.
@@ -39,6 +42,7 @@ struct SolveSummary {
   int iterations = 0;            // 0 for direct methods
   double stop_value = 0.0;       // iterative: sqrt(δ/δ0) at the end (residual ratio for BiCGSTAB)
   double start_value = 0.0;      // the same for the initial guess
+  int bound_iterations = -1;     // core PCG: what they cannot exceed (solve/core_bound.h); -1: no bound known
   double relative_residual = 0;  // true one, recomputed from A, b, x: |S(b - A x)| / |S(b - A(I-S)z)|; not what the method believes
   double reduce_ms = 0.0;        // forming Ã, b̃ and the core
   double order_ms = 0.0;         // analysis (ordering and symbolic work)

@@ -16,6 +16,7 @@ constexpr double steepest_uphill = 0.5;
 void add_solve(SolveSummary& sum, const SolveSummary& solve) {
   SolveSummary total = solve;
   total.iterations = std::max(sum.iterations, solve.iterations);
+  total.bound_iterations = std::max(sum.bound_iterations, solve.bound_iterations);
   total.reduce_ms += sum.reduce_ms;
   total.order_ms += sum.order_ms;
   total.factor_ms += sum.factor_ms;
