@@ -20,7 +20,7 @@ struct SolveArguments {
   bool all = false;
   SolverOptions options{.tolerance = 1e-6};
   std::string history, json;
-  bool wants_json = false;
+  bool wants_json = false, spectrum = false;
   int threads = 0;
 };
 
@@ -91,10 +91,15 @@ int solve(const SolveArguments& arguments) {
   }
   if (!arguments.history.empty()) write_histories(arguments, names, system, reference);
 
+  CoreSpectrum spectrum;
+  if (arguments.spectrum) spectrum = measure_core_spectrum(system, options.tolerance);
   const bool json_to_stdout = arguments.wants_json && arguments.json.empty();
   if (!json_to_stdout) print_table(rows, reference, stored, options.tolerance);
+  if (!json_to_stdout && arguments.spectrum) fmt::print("\n{}", spectrum_text(spectrum, options.tolerance));
   if (arguments.wants_json) {
-    const std::string json = solve_json(rows, facts_of(arguments, stored)).dump(2) + "\n";
+    nlohmann::ordered_json report = solve_json(rows, facts_of(arguments, stored));
+    if (arguments.spectrum) report["core"] = to_json(spectrum);
+    const std::string json = report.dump(2) + "\n";
     json_to_stdout ? fmt::print("{}", json) : write_file(arguments.json, json);
   }
   bool all_converged = true;
@@ -140,6 +145,7 @@ void add_solve_verb(CLI::App& app, int& exit_code) {
                           ->type_name("[FILE]");
   verb->add_option("--history", arguments->history, "Write a CSV of every iteration: solver,iteration,stop_value,residual,anorm_error")
       ->type_name("FILE");
+  verb->add_flag("--spectrum", arguments->spectrum, "Measure the core's eigenvalues (Lanczos) and print them beside their bound");
   verb->add_option("--threads", arguments->threads, "Threads to use (default: all processors)")->check(CLI::Range(1, 1024));
   verb->footer(
       "Example: taut solve out/ball_60 --solver core_pcg,mpcg,cholmod --tolerance 1e-3\n"
