@@ -37,11 +37,11 @@ TEST(AutoScene, SolvesEveryRegime) {
       for (const double k_stretch : {60.0, 6e3, 6e6}) {
         const std::string setting = fmt::format("h {}, shear {}, stretch {}", h, k_shear, k_stretch);
         SCOPED_TRACE(setting);
-        const Scene scene = read_scene_text(ball, "/scenes/test.toml",
-                                            std::vector<std::string>{fmt::format("time.step={}", h), "time.max_halvings=0",
-                                                                     fmt::format("cloth.k_shear={}", k_shear), fmt::format("cloth.k_bend={}", k_bend),
-                                                                     fmt::format("cloth.k_stretch={}", k_stretch),
-                                                                     fmt::format("solver.tolerance={}", tolerance)});
+        const Scene scene = read_scene_text(
+            ball, "/scenes/test.toml",
+            std::vector<std::string>{fmt::format("time.step={}", h), "time.max_halvings=0", fmt::format("cloth.k_shear={}", k_shear),
+                                     fmt::format("cloth.k_bend={}", k_bend), fmt::format("cloth.k_stretch={}", k_stretch),
+                                     fmt::format("solver.tolerance={}", tolerance)});
         EXPECT_EQ(scene.solver.name, "auto") << "the default";
         Simulation simulation(scene);
         double error = 0.0;

@@ -12,10 +12,10 @@ namespace taut::test {
 
 struct Material {
   double k_stretch = 6000, k_shear = 0.3, k_bend = 0.05, h = 3.67e-3, k_damp = 0.0;
-  bool graded = false;   // stiffnesses from 0.01 to 100 times as much, spring by spring, masses from 0.1 to 10 times
-  double motion = 1.0;   // of the nodes from their places, in a third of the spacing
+  bool graded = false;  // stiffnesses from 0.01 to 100 times as much, spring by spring, masses from 0.1 to 10 times
+  double motion = 1.0;  // of the nodes from their places, in a third of the spacing
   double node_mass = 9.5e-6;
-  Index nodes = 15;      // along an edge
+  Index nodes = 15;  // along an edge
   std::string describe() const {
     return "k_stretch " + std::to_string(k_stretch) + ", k_shear " + std::to_string(k_shear) + ", k_bend " + std::to_string(k_bend) +
            ", h " + std::to_string(h) + (graded ? ", graded" : "");

@@ -13,7 +13,7 @@ namespace taut {
 
 namespace {
 
-constexpr const char* names[] = {"core_pcg:block", "upcg:block_diagonal", "upcg:ic0_core", "upcg:ic0", "block_cholesky"};
+constexpr const char* names[] = {auto_core_method, "upcg:block_diagonal", "upcg:ic0_core", "upcg:ic0", "block_cholesky"};
 
 constexpr double shortest_patience = 16, longest_patience = 256;  // solves
 constexpr double bar_after_failure = 64;                          // solves
@@ -91,7 +91,8 @@ AutoSolver::Method AutoSolver::choose(const SystemSize& size) const {
   // Untried and not to be tried: it has failed.
   Method best = !tried(core) && records_[core].next_trial > solves_ ? direct : core;
   for (int m = 0; m < method_count; ++m)
-    if (const Method method = static_cast<Method>(m); tried(method) && expected_work(method, size) < expected_work(best, size)) best = method;
+    if (const Method method = static_cast<Method>(m); tried(method) && expected_work(method, size) < expected_work(best, size))
+      best = method;
   return best;
 }
 
@@ -127,7 +128,8 @@ void AutoSolver::run(const LinearSystem& system, std::span<double> x, SolveSumma
     if (attempt(direct, 0, solve) == Attempt::solved) return;
   }
   // A core that leaves out too much, or everything, has no useful bound.
-  if (attempt(core, budget(core, solve.size, give_up_at * expected_work(direct, solve.size)), solve) != Attempt::solved) attempt(direct, 0, solve);
+  if (attempt(core, budget(core, solve.size, give_up_at * expected_work(direct, solve.size)), solve) != Attempt::solved)
+    attempt(direct, 0, solve);
 }
 
 double AutoSolver::allowed_condition(const LinearSystem& system) { return system.rho >= 0.0 ? 2.0 * (1.0 + system.rho) : core_condition; }
@@ -204,7 +206,8 @@ std::vector<double> AutoSolver::memory() const {
   for (int m = 0; m < method_count; ++m) {
     const Record& r = records_[static_cast<std::size_t>(m)];
     list.insert(list.end(), {r.iterations, r.condition, r.next_trial, r.patience, r.factor_nonzeros, r.factor_flops, r.preparations});
-    const std::vector<double> inner = solvers_[static_cast<std::size_t>(m)] ? solvers_[static_cast<std::size_t>(m)]->memory() : std::vector<double>{};
+    const std::vector<double> inner =
+        solvers_[static_cast<std::size_t>(m)] ? solvers_[static_cast<std::size_t>(m)]->memory() : std::vector<double>{};
     list.push_back(static_cast<double>(inner.size()));
     list.insert(list.end(), inner.begin(), inner.end());
   }
@@ -226,7 +229,8 @@ void AutoSolver::restore_memory(std::span<const double> memory) {
   solves_ = next();
   for (int m = 0; m < method_count; ++m) {
     Record& r = records_[static_cast<std::size_t>(m)];
-    for (double* value : {&r.iterations, &r.condition, &r.next_trial, &r.patience, &r.factor_nonzeros, &r.factor_flops, &r.preparations}) *value = next();
+    for (double* value : {&r.iterations, &r.condition, &r.next_trial, &r.patience, &r.factor_nonzeros, &r.factor_flops, &r.preparations})
+      *value = next();
     std::vector<double> inner(static_cast<std::size_t>(next()));
     for (double& value : inner) value = next();
     if (!inner.empty()) solver(static_cast<Method>(m)).restore_memory(inner);

@@ -1,22 +1,28 @@
 #pragma once
 // The solver `auto`: in each solve the method that should cost least, of
 //
-//   core_pcg:block        corePCG, on whatever core the system has; its iterations are bounded        always works, the measure of the others
-//   upcg:block_diagonal   no set-up; best for soft or quiet cloth
-//   upcg:ic0_core, :ic0   little set-up, iterations grow with the stiffness; may break down
-//   block_cholesky        direct; best where nearly all springs are in the core
+//   core_pcg:block              on whatever core the system has, with a bound on its iterations; the measure of the others
 //
-// Work is counted (solve/solver_work.h), from the sizes of matrix and factor and the iterations of a method's last solve; no clock. The rules:
+//   upcg:block_diagonal         no set-up; for soft or quiet cloth
 //
-//   choose    the least work, of the methods that have been tried. The first solve is corePCG's
-//   try       another one now and then: those never tried first, one a solve; then such as would win with half their last iterations, after
-//             16 solves, after twice as many each time they lose (at most 256). A trial that has cost as much as the chosen method would is given up
-//   give up   a method without a bound when it has cost twice what corePCG would, corePCG itself at twice what the direct one would
-//   fall back a method that fails is not tried again for 64 solves; corePCG goes on from its last iterate, then the direct one
+//   upcg:ic0_core, upcg:ic0     little set-up, but iterations grow with the stiffness, and they may break down
+//
+//   block_cholesky              direct; where nearly all springs are in the core
+//
+// Work is counted (solve/solver_work.h) from the sizes of matrix and factor and from the iterations of a method's last solve; no clock.
+//
+// Choose: the least work, of the methods that have been tried. The first solve is corePCG's.
+//
+// Try another one now and then: first those never tried, one a solve; then such as would win with half their last iterations, after 16
+// solves, and after twice as many each time they lose (at most 256). A trial that has cost as much as the chosen method would is given up.
+//
+// Give up a method without a bound when it has cost twice what corePCG would, corePCG itself at twice what the direct one would.
+//
+// Fall back: a method that fails is not tried again for 64 solves; corePCG goes on from its last iterate, then the direct one.
 //
 // Same accuracy: the stop test's norm depends on the preconditioner, |e|_A/|x|_A <= sqrt(cond(M⁻¹A)) tolerance. A method whose condition (by
-// Lanczos, from the coefficients of its own last solve) is above corePCG's bound gets a tolerance as much smaller; what stopped too early goes on
-// with another method.
+// Lanczos, from the coefficients of its own last solve) is above corePCG's bound gets a tolerance as much smaller; what stopped too early
+// goes on with another method.
 //
 // Deterministic. What later choices depend on is in memory(), a few numbers, so that a resumed simulation takes the same way.
 
@@ -27,6 +33,9 @@
 #include "taut/solve/solver_work.h"
 
 namespace taut {
+
+// What solves on the core.
+inline constexpr const char* auto_core_method = "core_pcg:block";
 
 class AutoSolver : public ConstrainedSolver {
  public:
@@ -46,10 +55,10 @@ class AutoSolver : public ConstrainedSolver {
 
   // What is remembered of a method. All numbers are doubles, so that a memory is a list of them.
   struct Record {
-    double iterations = -1.0;   // of its last solve, or more than where it was given up; negative: never tried
-    double condition = 100.0;   // of M⁻¹ A, as far as its solves have shown
-    double next_trial = 0.0;    // number of the solve from which on it may be tried
-    double patience = 16.0;     // solves between trials
+    double iterations = -1.0;  // of its last solve, or more than where it was given up; negative: never tried
+    double condition = 100.0;  // of M⁻¹ A, as far as its solves have shown
+    double next_trial = 0.0;   // number of the solve from which on it may be tried
+    double patience = 16.0;    // solves between trials
     double factor_nonzeros = 0.0, factor_flops = 0.0;
     double preparations = 1.0;  // of the preconditioner, in its last solve
   };

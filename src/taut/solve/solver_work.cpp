@@ -30,9 +30,7 @@ FactorSize estimate_factor(const SystemSize& size, double nonzeros) {
 namespace {
 
 // Product with Ã, and the loop's dot products and updates.
-double loop_work(const SystemSize& size) {
-  return work_rates.stream * (8.5 * size.nonzeros + (16.0 + 100.0) * size.unknowns);
-}
+double loop_work(const SystemSize& size) { return work_rates.stream * (8.5 * size.nonzeros + (16.0 + 100.0) * size.unknowns); }
 
 }  // namespace
 
@@ -45,9 +43,9 @@ MethodWork incomplete_work(const SystemSize& size, double nonzeros, double prepa
 }
 
 MethodWork core_work(const SystemSize& size, const FactorSize& factor) {
-  const double solve = work_rates.factor_solve * 2.0 * 8.0 * factor.nonzeros;
+  const double solve = work_rates.factor_solve * 2.0 * 8.0 * factor.nonzeros / work_rates.core_speed;
   // One solve for δ0 and one for the first residual, beside those of the iterations.
-  return {work_rates.factor * factor.flops + 2.0 * solve, loop_work(size) + solve};
+  return {work_rates.factor * factor.flops / work_rates.core_speed + 2.0 * solve, loop_work(size) + solve};
 }
 
 MethodWork direct_work(const FactorSize& factor) {

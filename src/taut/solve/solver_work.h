@@ -11,11 +11,12 @@ namespace taut {
 
 // Taut's kernels relative to each other, seconds a byte and an operation.
 struct WorkRates {
-  double stream = 1.0 / 20e9;         // products and vectors: bytes read and written
-  double incomplete = 1.0 / 3.2e9;    // IC(0)'s solves: one core, each row waits for the last
+  double stream = 1.0 / 20e9;             // products and vectors: bytes read and written
+  double incomplete = 1.0 / 3.2e9;        // IC(0)'s solves: one core, each row waits for the last
   double incomplete_setup = 1.0 / 1.6e9;  // IC(0)'s factorisation: bytes of the matrix it is made from
-  double factor = 1.0 / 30e9;         // Cholesky factorisation, operations
-  double factor_solve = 1.0 / 16e9;   // its triangular solves: bytes of the factor
+  double factor = 1.0 / 30e9;             // Cholesky factorisation, operations
+  double factor_solve = 1.0 / 16e9;       // its triangular solves: bytes of the factor
+  double core_speed = 1.0;                // of the core's factor against the direct method's: 2 in single precision
 };
 inline constexpr WorkRates work_rates{};
 
@@ -25,8 +26,8 @@ struct MethodWork {
 };
 
 struct SystemSize {
-  double unknowns = 0.0, nodes = 0.0;           // free ones; nodes: a third of them
-  double nonzeros = 0.0, core_nonzeros = 0.0;   // of Ã and of its core, both triangles
+  double unknowns = 0.0, nodes = 0.0;          // free ones; nodes: a third of them
+  double nonzeros = 0.0, core_nonzeros = 0.0;  // of Ã and of its core, both triangles
 };
 SystemSize size_of(const LinearSystem& system);
 

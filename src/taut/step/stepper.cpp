@@ -47,9 +47,10 @@ Stepper::Stepper(Index nodes, std::vector<const ForceModel*> models, ExternalFor
 std::vector<std::uint8_t> Stepper::chosen_core(double h) const {
   // An integrator's first step has the largest coefficients.
   const State first;
-  return taut::choose_core(*assembler_.pattern(),
-                           assembler_.block_bounds(integrator_->stiffness_coefficient(first, h), integrator_->damping_coefficient(first, h)),
-                           external_.masses());
+  return taut::choose_core(
+      *assembler_.pattern(),
+      assembler_.block_bounds(integrator_->stiffness_coefficient(first, h), integrator_->damping_coefficient(first, h)),
+      external_.masses());
 }
 
 void Stepper::choose_core(double h) {
