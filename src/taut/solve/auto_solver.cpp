@@ -231,7 +231,10 @@ void AutoSolver::restore_memory(std::span<const double> memory) {
     Record& r = records_[static_cast<std::size_t>(m)];
     for (double* value : {&r.iterations, &r.condition, &r.next_trial, &r.patience, &r.factor_nonzeros, &r.factor_flops, &r.preparations})
       *value = next();
-    std::vector<double> inner(static_cast<std::size_t>(next()));
+    const double count = next();
+    if (!(count >= 0.0 && count <= static_cast<double>(memory.size() - at)))
+      throw InputError("the stored memory of the solver 'auto' is damaged");
+    std::vector<double> inner(static_cast<std::size_t>(count));
     for (double& value : inner) value = next();
     if (!inner.empty()) solver(static_cast<Method>(m)).restore_memory(inner);
   }
