@@ -25,7 +25,7 @@ struct SolveArguments {
   SolveLimits limits;
   std::optional<double> residual;
   std::string history, json, plot;
-  bool wants_json = false;
+  bool wants_json = false, spectrum = false;
   int threads = 0;
 };
 
@@ -114,10 +114,15 @@ int solve(const SolveArguments& arguments) {
     write_histories(arguments, rows, system, reference,
                     fmt::format("{}: {} unknowns", facts.value("scene", std::string()), stored.unknowns()));
 
+  CoreSpectrum spectrum;
+  if (arguments.spectrum) spectrum = measure_core_spectrum(system, arguments.options.tolerance);
   const bool json_to_stdout = arguments.wants_json && arguments.json.empty();
   if (!json_to_stdout) print_table(rows, reference, stored, arguments.options.tolerance);
+  if (!json_to_stdout && arguments.spectrum) fmt::print("\n{}", spectrum_text(spectrum, arguments.options.tolerance));
   if (arguments.wants_json) {
-    const std::string json = solve_json(rows, facts).dump(2) + "\n";
+    nlohmann::ordered_json report = solve_json(rows, facts);
+    if (arguments.spectrum) report["core"] = to_json(spectrum);
+    const std::string json = report.dump(2) + "\n";
     json_to_stdout ? fmt::print("{}", json) : write_file(arguments.json, json);
   }
   bool all_converged = true;
@@ -174,6 +179,7 @@ void add_solve_verb(CLI::App& app, int& exit_code) {
                    "Write a CSV of every iteration: solver,iteration,stop_value,residual,anorm_error,time_ms")
       ->type_name("FILE");
   verb->add_option("--plot", arguments->plot, "Draw A-norm error against time, a curve a method")->type_name("FILE.svg|png");
+  verb->add_flag("--spectrum", arguments->spectrum, "Measure the core's eigenvalues (Lanczos) and print them beside their bound");
   verb->add_option("--threads", arguments->threads, "Threads to use (default: all processors)")->check(CLI::Range(1, 1024));
   verb->footer(
       "Example: taut solve out/ball_60 --solver core_pcg,mpcg,cholmod --tolerance 1e-3\n"

@@ -26,6 +26,24 @@ std::map<std::string, Json> rows_by_solver(const std::string& json) {
   return rows;
 }
 
+TEST(Solve, PrintsTheCoresSpectrumBesideItsBound) {
+  TemporaryFolder folder;
+  folder.file("small.toml", small_scene());
+  ASSERT_EQ(taut(folder, {"dump", "small.toml", "--step", "5", "--out", "d", "--quiet"}).exit_code, 0);
+  const ProgramEnd end = taut(folder, {"solve", "d", "--solver", "auto,core_fast", "--spectrum", "--json"});
+  ASSERT_EQ(end.exit_code, 0) << end.err;
+  const Json core = Json::parse(end.out).at("core");
+  const double smallest = core.at("smallest"), largest = core.at("largest"), rho = core.at("rho");
+  EXPECT_GE(smallest, 1.0 / (1.0 + rho) - 1e-9);
+  EXPECT_LE(largest, 2.0 + 1e-9);
+  EXPECT_LT(smallest, largest);
+  EXPECT_LE(core.at("iterations").get<int>(), core.at("bound_iterations").get<int>());
+  const auto rows = rows_by_solver(end.out);
+  EXPECT_EQ(rows.at("core_fast").at("iterations"), core.at("iterations"));
+  EXPECT_EQ(rows.at("core_fast").at("bound_iterations"), core.at("bound_iterations"));
+  EXPECT_EQ(rows.at("auto").at("method"), "core_fast");
+}
+
 TEST(Dump, WritesTheFilesThatAreDocumented) {
   const WorkFolder folder;
   folder.file("small.toml", small_scene());

@@ -39,10 +39,10 @@ TEST(Lanczos, FindsTheEndsOfTheSpectrumUnderADiagonal) {
     const BlockCsr a = mixed_spd(random, margin);
     DiagonalPreconditioner m;
     ASSERT_TRUE(m.update(a).ok());
-    const SpectrumEnds found = spectrum_ends(run(a, m, random, 1e-11));
+    const SpectrumEnds found = spectrum_ends(run(a, m, random, 1e-30));
     const SpectrumEnds expected = dense_ends(a, Eigen::MatrixXd(dense(a).diagonal().asDiagonal()));
-    EXPECT_NEAR(found.smallest, expected.smallest, 1e-6 * expected.smallest) << margin;
-    EXPECT_NEAR(found.largest, expected.largest, 1e-6 * expected.largest) << margin;
+    EXPECT_NEAR(found.smallest, expected.smallest, 1e-4 * expected.smallest) << margin;
+    EXPECT_NEAR(found.largest, expected.largest, 1e-4 * expected.largest) << margin;
   }
 }
 
@@ -53,10 +53,10 @@ TEST(Lanczos, FindsTheEndsOfTheSpectrumUnderAFactor) {
   for_each_entry(p, [](Index r, Index c, double& value) { value = r == c ? 1.5 * value : 0.7 * value; });
   const auto factor = make_cholesky("eigen");
   ASSERT_TRUE(factor->analyze(p).ok() && factor->factorize(p).ok());
-  const SpectrumEnds found = spectrum_ends(run(a, FactorPreconditioner(*factor, false), random, 1e-11));
+  const SpectrumEnds found = spectrum_ends(run(a, FactorPreconditioner(*factor, false), random, 1e-30));
   const SpectrumEnds expected = dense_ends(a, dense(p));
-  EXPECT_NEAR(found.smallest, expected.smallest, 1e-6 * expected.smallest);
-  EXPECT_NEAR(found.largest, expected.largest, 1e-6 * expected.largest);
+  EXPECT_NEAR(found.smallest, expected.smallest, 1e-4 * expected.smallest);
+  EXPECT_NEAR(found.largest, expected.largest, 1e-4 * expected.largest);
 }
 
 // Ritz values: within the spectrum from the first iteration on, and wider with each.
@@ -69,7 +69,7 @@ TEST(Lanczos, ApproachesFromWithin) {
   SpectrumEnds before{1e300, 0.0};
   for (const int iterations : {1, 3, 6, 12}) {
     Random same(14);
-    const SpectrumEnds found = spectrum_ends(run(a, m, same, 1e-11, iterations));
+    const SpectrumEnds found = spectrum_ends(run(a, m, same, 1e-30, iterations));
     EXPECT_LT(found.smallest, before.smallest);
     EXPECT_GT(found.largest, before.largest);
     EXPECT_GE(found.smallest, expected.smallest * (1.0 - 1e-9));

@@ -26,6 +26,7 @@ Checkpoint sample() {
   c.contacts.node = {1}, c.contacts.solid = {2};
   c.contacts.sticking = {ContactStick{.sticks = 1, .wait = 5, .longest_wait = 6}};
   c.contacts.normal_force = {ContactForce{.normal = 3.5, .friction = {1, 2, 3}, .inverse_mass = 4.25}};
+  c.solver_memory = {1.5, -0.0, 7e-300};
   return c;
 }
 
@@ -54,6 +55,7 @@ TEST(Checkpoint, ComesBackWhole) {
   EXPECT_TRUE(again.state.x == c.state.x && again.state.v == c.state.v && again.state.x_prev == c.state.x_prev);
   EXPECT_TRUE(again.state.v_prev == c.state.v_prev && again.state.last == c.state.last);
   EXPECT_TRUE(again.contacts == c.contacts);
+  EXPECT_EQ(again.solver_memory, c.solver_memory);
   EXPECT_EQ(bytes_of(again), bytes_of(c)) << "to the last bit, the sign of zero too";
 }
 

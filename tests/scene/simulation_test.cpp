@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <sstream>
 
 #include "taut/base/error.h"
@@ -96,27 +97,46 @@ TEST(Simulation, DeterministicForAnyNumberOfThreads) {
 }
 
 // What goes on from a checkpoint ends in the same bits as what was never interrupted.
+struct Interrupted {
+  const char* integrator;
+  const char* solver;
+  int at;
+};
+
 TEST(Simulation, GoesOnFromACheckpointToTheSameBits) {
-  for (const char* integrator : {"time.integrator=\"semi_implicit_euler\"", "time.integrator=\"bdf2\""}) {
-    const Scene scene = scene_of(crowded, {integrator, "cloth.grid.nodes=[21, 20]"});
+  // `auto`: while it tries its methods for the first time, and later.
+  for (const auto& [integrator, solver, at] : {Interrupted{"time.integrator=semi_implicit_euler", "solver.name=core_pcg:block", 20},
+                                               Interrupted{"time.integrator=bdf2", "solver.name=core_pcg:block", 20},
+                                               Interrupted{"time.integrator=semi_implicit_euler", "solver.name=auto", 2},
+                                               Interrupted{"time.integrator=semi_implicit_euler", "solver.name=auto", 20},
+                                               Interrupted{"time.integrator=newton", "solver.name=auto", 20},
+                                               Interrupted{"time.integrator=bdf2", "solver.name=auto", 23}}) {
+    const Scene scene = scene_of(crowded, {integrator, solver, "cloth.grid.nodes=[21, 20]"});
+    SCOPED_TRACE(fmt::format("{}, {}, step {}", integrator, solver, at));
+    std::set<std::string> methods;
     Simulation whole(scene), resumed(scene);
     StepRecord record;
     std::string bytes;
     for (int k = 0; k < 40; ++k) {
-      if (k == 20) {
-        EXPECT_GT(whole.contact().contacts(), 5);
+      if (k == at) {
+        EXPECT_GT(whole.contact().contacts(), k < 10 ? 0 : 5);
         std::ostringstream out;
-        write(out, Checkpoint{scene_to_toml(scene), whole.steps_done(), 3, whole.state(), whole.contact().state()});
+        write(out, Checkpoint{scene_to_toml(scene), whole.steps_done(), 3, whole.state(), whole.contact().state(), whole.stepper().solver().memory()});
         bytes = out.str();
       }
       ASSERT_TRUE(whole.step(record).ok());
+      methods.insert(record.solver);
     }
     Checkpoint checkpoint = parse_checkpoint(bytes, "state.bin");
-    resumed.restore(checkpoint.state, checkpoint.contacts, checkpoint.steps);
-    for (int k = 20; k < 40; ++k) ASSERT_TRUE(resumed.step(record).ok());
+    resumed.restore(checkpoint.state, checkpoint.contacts, checkpoint.steps, checkpoint.solver_memory);
+    for (int k = at; k < 40; ++k) ASSERT_TRUE(resumed.step(record).ok());
     EXPECT_EQ(resumed.steps_done(), 40);
     expect_same(resumed.state(), whole.state(), integrator);
     EXPECT_TRUE(resumed.contact().state() == whole.contact().state());
+    EXPECT_EQ(resumed.stepper().solver().memory(), whole.stepper().solver().memory());
+    if (scene.solver.name == "auto") {
+      EXPECT_GT(methods.size(), 1u) << "always the same method: there was nothing to remember";
+    }
   }
 }
 

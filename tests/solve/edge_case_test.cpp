@@ -131,6 +131,11 @@ TEST_P(EdgeCase, IterationLimitIsReported) {
   solver->observer = [&](int iteration, double, std::span<const double>) { EXPECT_EQ(iteration, ++calls); };
   std::vector<double> x(c.b.size());
   const SolveSummary summary = solver->solve(c.system(), x);
+  if (GetParam() == "auto") {  // it has something to fall back on
+    EXPECT_TRUE(summary.status.ok());
+    EXPECT_EQ(summary.method, "block_cholesky");
+    return;
+  }
   EXPECT_EQ(calls, summary.iterations);
   if (summary.status.ok()) {
     EXPECT_EQ(summary.iterations, 0);  // a direct method

@@ -30,7 +30,9 @@ Json row_json(const SolverRow& row, const Json& facts, double reference_ms) {
   json["status"] = name_of(s.status.outcome);
   if (!s.status.message.empty()) json["message"] = s.status.message;
   if (!s.remark.empty()) json["remark"] = s.remark;
+  if (s.method != s.solver) json["method"] = s.method;
   json["iterations"] = s.iterations;
+  if (s.bound_iterations >= 0) json["bound_iterations"] = s.bound_iterations;
   json["setup_ms"] = setup_ms(s);
   json["solve_ms"] = s.solve_ms;
   json["solves"] = row.solves;
@@ -49,10 +51,27 @@ Json row_json(const SolverRow& row, const Json& facts, double reference_ms) {
 std::string solve_table(const std::vector<SolverRow>& rows) {
   TextTable table({"solver", "status", "iterations", "setup ms", "solve ms", "solves", "memory MB", "residual", "A-norm error"});
   for (const auto& [s, error, solves, options] : rows)
-    table.add({s.solver, name_of(s.status.outcome), std::to_string(s.iterations), ms_text(setup_ms(s)), ms_text(s.solve_ms),
-               std::to_string(solves), fmt::format("{:.2f}", s.memory_bytes / 1e6), fmt::format("{:.2e}", s.relative_residual),
-               error_text(error)});
+    table.add({s.method == s.solver ? s.solver : s.solver + " (" + s.method + ")", name_of(s.status.outcome), std::to_string(s.iterations),
+               ms_text(setup_ms(s)), ms_text(s.solve_ms), std::to_string(solves), fmt::format("{:.2f}", s.memory_bytes / 1e6),
+               fmt::format("{:.2e}", s.relative_residual), error_text(error)});
   return table.text();
+}
+
+std::string spectrum_text(const CoreSpectrum& spectrum, double tolerance) {
+  const double condition = spectrum.smallest > 0.0 ? spectrum.largest / spectrum.smallest : 0.0;
+  std::string text = fmt::format("core: λ(P⁻¹A) from {:.4g} to {:.4g}, condition {:.4g}", spectrum.smallest, spectrum.largest, condition);
+  if (spectrum.rho >= 0.0)
+    text +=
+        fmt::format("; bound: from {:.4g} to 2, condition {:.4g} (ρ = {:.4g})", 1.0 / (1.0 + spectrum.rho), spectrum.bound, spectrum.rho);
+  text += fmt::format("; iterations to {:g}: {}", tolerance, spectrum.iterations);
+  if (spectrum.rho >= 0.0) text += fmt::format(", bound {}", spectrum.bound_iterations);
+  return text + "\n";
+}
+
+Json to_json(const CoreSpectrum& spectrum) {
+  Json json{{"smallest", spectrum.smallest}, {"largest", spectrum.largest}, {"iterations", spectrum.iterations}};
+  if (spectrum.rho >= 0.0) json["rho"] = spectrum.rho, json["bound"] = spectrum.bound, json["bound_iterations"] = spectrum.bound_iterations;
+  return json;
 }
 
 Json solve_json(const std::vector<SolverRow>& rows, const Json& facts) {

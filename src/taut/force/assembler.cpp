@@ -1,6 +1,5 @@
 #include "taut/force/assembler.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cassert>
 
@@ -93,6 +92,26 @@ std::vector<std::uint8_t> Assembler::core_mask(ForceClass core_class) const {
   return mask;
 }
 
+std::vector<double> Assembler::block_bounds(double matrix_stiffness, double matrix_damping) const {
+  std::vector<double> own(static_cast<std::size_t>(block_base_.back())), bounds(static_cast<std::size_t>(pattern_->blocks()), 0.0);
+  for (std::size_t m = 0; m < models_.size(); ++m)
+    if (implicit_[m]) models_[m]->bound_blocks(matrix_stiffness, matrix_damping, std::span(own).subspan(block_base_[m], block_base_[m + 1] - block_base_[m]));
+  for (Index i = 0; i < pattern_->rows(); ++i)
+    for (Index k = pattern_->row_start[i]; k < pattern_->row_start[i + 1]; ++k) {
+      if (k == pattern_->diagonal[i]) continue;
+      for (Index c = block_start_[k]; c < block_start_[k + 1]; ++c) bounds[k] += own[block_list_[c].id()];
+    }
+  return bounds;
+}
+
+Index Assembler::elements_in(std::span<const std::uint8_t> mask) const {
+  Index count = 0;
+  for (Index i = 0; i < pattern_->rows(); ++i)
+    for (Index k = pattern_->diagonal[i] + 1; k < pattern_->row_start[i + 1]; ++k)
+      if (mask[k]) count += block_start_[k + 1] - block_start_[k];
+  return count;
+}
+
 void Assembler::gather_row(Index i, const Diagonal& diagonal, BlockCsr& a) const {
   const BlockPattern& p = *pattern_;
   const Index width = p.width(i);
@@ -144,32 +163,6 @@ void Assembler::assemble(std::span<const ForceRequest> requests, const Diagonal&
       b[i] = sum;
     }
   });
-}
-
-double Assembler::remainder_ratio(std::span<const std::uint8_t> core_mask, std::span<const double> masses) const {
-  const BlockPattern& p = *pattern_;
-  // An element is in the remainder when its off-diagonal block was deleted. Its diagonal part is then minus the sum of the deleted blocks' elements:
-  // every element's rows sum to zero, so D_R,i = -sum over deleted k of A_ik, whatever the number of nodes of an element.
-  std::vector<double> ratio(static_cast<std::size_t>(p.rows()), 0.0);
-  parallel_for(p.rows(), 256, [&](Index begin, Index end) {
-    for (Index i = begin; i < end; ++i) {
-      Mat3 remainder = Mat3::Zero();
-      for (Index k = p.row_start[i]; k < p.row_start[i + 1]; ++k) {
-        if (core_mask[k]) continue;
-        for (Index c = block_start_[k]; c < block_start_[k + 1]; ++c) {
-          const Contribution from = block_list_[c];
-          const Eigen::Map<const Mat3> b(&blocks_[9 * static_cast<std::size_t>(from.id())]);
-          remainder -= (from.negative() ? -1.0 : 1.0) * b;
-        }
-      }
-      const Mat3 symmetric = 0.5 * (remainder + remainder.transpose());
-      Eigen::SelfAdjointEigenSolver<Mat3> eigen;
-      eigen.computeDirect(symmetric, Eigen::EigenvaluesOnly);
-      // The closed form is exact to about 1e-8 of the norm; the bound must not be missed by rounding.
-      ratio[i] = std::max(0.0, eigen.eigenvalues()[2] + 1e-7 * symmetric.norm()) / masses[i];
-    }
-  });
-  return ratio.empty() ? 0.0 : *std::ranges::max_element(ratio);
 }
 
 }  // namespace taut

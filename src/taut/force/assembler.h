@@ -29,6 +29,12 @@ class Assembler {
   // 1 for each block of the pattern that a model of `core_class` fills, and for the diagonal (paper Section 6: A_core keeps these).
   std::vector<std::uint8_t> core_mask(ForceClass core_class) const;
 
+  // For each block of the pattern off the diagonal, a bound on the norm of what the elements add to it with these factors of K and D, in
+  // whatever state; 0 on the diagonal.
+  std::vector<double> block_bounds(double matrix_stiffness, double matrix_damping) const;
+  // How many elements have a block of the mask off the diagonal.
+  Index elements_in(std::span<const std::uint8_t> mask) const;
+
   struct Diagonal {
     std::span<const double> masses;   // kg
     double mass = 1.0;                // factor
@@ -37,10 +43,6 @@ class Assembler {
   };
   // requests: one per model. Overwrites a (same pattern) and b (one entry per node). Explicit models must not ask for a matrix (asserted).
   void assemble(std::span<const ForceRequest> requests, const Diagonal& diagonal, BlockCsr& a, std::span<Vec3> b);
-
-  // λmax of the 3x3 diagonal blocks that the elements outside the core add to the matrix, relative to mass * m_i, the largest over all nodes: the ρ of
-  // MATH.md section 5. Uses the blocks of the last assemble().
-  double remainder_ratio(std::span<const std::uint8_t> core_mask, std::span<const double> masses) const;
 
  private:
   struct Contribution {  // block or vector `id` of the flat arrays, with sign and transposition

@@ -54,6 +54,9 @@ class ForceModel {
   virtual void connect(ConnectionSink& sink) const = 0;
   // blocks: 9 * block_count() doubles, left alone unless the request wants a matrix; vectors: block_count() entries. Parallel inside.
   virtual void evaluate(const ForceRequest& request, std::span<double> blocks, std::span<Vec3> vectors) const = 0;
+  // For each block b of matrix_stiffness K + matrix_damping D: a bound on its largest eigenvalue that holds in every state (block_count()
+  // entries). The core is chosen by it, so that the choice stays while the cloth moves.
+  virtual void bound_blocks(double matrix_stiffness, double matrix_damping, std::span<double> bounds) const = 0;
   // J
   virtual double energy(std::span<const Vec3> x) const = 0;
   // Elements with no direction left (both ends in one place): they give no force and no stiffness, and are counted.

@@ -91,6 +91,13 @@ SpringTension spring_tension(SpringLawKind law, const SpringParameters& p, doubl
   return beam.tension < line.tension ? line : SpringTension{beam.tension, beam.slope, false};
 }
 
+double largest_stiffness(SpringLawKind law, const SpringParameters& p) {
+  // T/L = k (1 - L0/L) < k in extension, and is dropped in compression.
+  if (law != SpringLawKind::choi_ko) return p.stiffness;
+  const double folded = 12.0 * std::numbers::pi * std::numbers::pi * p.stiffness / (p.rest_length * p.rest_length * p.rest_length);
+  return std::max(p.cap, folded);
+}
+
 double spring_energy(SpringLawKind law, const SpringParameters& p, double length) {
   if (length <= 0.0) return 0.0;
   const double stretch = length - p.rest_length;

@@ -46,6 +46,8 @@ struct SpringTension {
   bool slack = true;
 };
 SpringTension spring_tension(SpringLawKind law, const SpringParameters& p, double length);
+// The largest eigenvalue of K_s at any length, N/m: k; for choi_ko the steeper of the line and the beam folded flat (L = 0), 12 π² k_b/L0³.
+double largest_stiffness(SpringLawKind law, const SpringParameters& p);
 // ∫ T dL from the rest length, J.
 double spring_energy(SpringLawKind law, const SpringParameters& p, double length);
 

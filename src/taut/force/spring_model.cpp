@@ -101,6 +101,13 @@ void SpringModel::evaluate(const ForceRequest& request, std::span<double> blocks
   });
 }
 
+void SpringModel::bound_blocks(double matrix_stiffness, double matrix_damping, std::span<double> bounds) const {
+  for (std::size_t s = 0; s < springs_.size(); ++s) {
+    const SpringParameters& p = springs_[s].parameters;
+    bounds[s] = matrix_stiffness * largest_stiffness(law_, p) + matrix_damping * p.damping;
+  }
+}
+
 double SpringModel::energy(std::span<const Vec3> x) const {
   return ordered_sum(block_count(), [&](Index begin, Index end) {
     double sum = 0.0;

@@ -21,6 +21,7 @@ class SpringModel : public ForceModel {
   Index vector_count() const override { return block_count(); }
   void connect(ConnectionSink& sink) const override;
   void evaluate(const ForceRequest& request, std::span<double> blocks, std::span<Vec3> vectors) const override;
+  void bound_blocks(double matrix_stiffness, double matrix_damping, std::span<double> bounds) const override;
   double energy(std::span<const Vec3> x) const override;
   Index collapsed(std::span<const Vec3> x) const override;
 

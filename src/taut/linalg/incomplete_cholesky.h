@@ -29,6 +29,7 @@ class BlockIncompleteCholesky : public Preconditioner {
   void apply(std::span<const double> r, std::span<double> z) const override { factor_.solve(r, z); }
   Offset bytes() const override { return factor_.bytes(); }
   std::string remark() const override;
+  int preparations() const override { return factorizations_; }
 
   double shift() const { return shift_; }
   int factorizations() const { return factorizations_; }

@@ -5,7 +5,8 @@
 //
 // is the Lanczos tridiagonal of M^(-½) A M^(-½) from the start M^(-½) r_0 (Golub & Van Loan, "Matrix Computations", 4th ed., 11.3.5). Its
 // eigenvalues lie within the spectrum; the outermost reach it first. Lost orthogonality repeats those that have converged, and does no more
-// harm. Iterations after CG has reached rounding level are noise: a tolerance of 1e-10 is enough.
+// harm: CG's own residual goes on shrinking, whatever that of x does, so its tolerance may be 1e-30, to find the ends of which r_0 holds
+// little.
 
 #include "taut/linalg/krylov.h"
 

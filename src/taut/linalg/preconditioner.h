@@ -25,6 +25,8 @@ class Preconditioner {
   virtual void apply(std::span<const double> r, std::span<double> z) const = 0;
   virtual Offset bytes() const { return 0; }
   virtual std::string remark() const { return {}; }
+  // How often the last update had to begin anew: for counted work.
+  virtual int preparations() const { return 1; }
   // For multigrid: told before update(); others do not need it.
   virtual void set_near_null_space(NearNullSpace) {}
 };

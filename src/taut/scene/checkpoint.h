@@ -1,8 +1,8 @@
 #pragma once
 // Everything needed to go on with a simulation to the same bits, as one binary file (little-endian):
 //
-//   "TAUTCKP1", then the scene as TOML (length, bytes), steps done, frame, time, has_previous, the arrays x, v, x_prev, v_prev, last (length, doubles),
-//   the contacts, and a checksum (FNV-1a, 64 bits) of all before it
+//   "TAUTCKP2", then the scene as TOML (length, bytes), steps done, frame, time, has_previous, the arrays x, v, x_prev, v_prev, last (length, doubles),
+//   the contacts, the solver's memory, and a checksum (FNV-1a, 64 bits) of all before it
 
 #include <iosfwd>
 #include <string>
@@ -18,6 +18,7 @@ struct Checkpoint {
   int frame = 0;
   State state;
   ContactState contacts;
+  std::vector<double> solver_memory;  // ConstrainedSolver::memory
 };
 
 void write(std::ostream& out, const Checkpoint& checkpoint);

@@ -73,7 +73,7 @@ void ResultsFolder::remove_frames_after(int frame) const {
 
 void ResultsFolder::write_checkpoint(const Simulation& simulation, int frame) const {
   const Checkpoint checkpoint{scene_to_toml(simulation.scene()), simulation.steps_done(), frame, simulation.state(),
-                              simulation.contact().state()};
+                              simulation.contact().state(), simulation.stepper().solver().memory()};
   write_file(checkpoint_file(), [&](std::ostream& out) { write(out, checkpoint); });
 }
 
@@ -86,7 +86,7 @@ int ResultsFolder::read_checkpoint(Simulation& simulation) const {
     throw InputError({checkpoint_file().string()},
                      fmt::format("has {} nodes, the scene has {}; a mesh file has changed since: run the scene anew",
                                  checkpoint.state.x.size(), simulation.cloth().nodes()));
-  simulation.restore(std::move(checkpoint.state), std::move(checkpoint.contacts), checkpoint.steps);
+  simulation.restore(std::move(checkpoint.state), std::move(checkpoint.contacts), checkpoint.steps, checkpoint.solver_memory);
   return checkpoint.frame;
 }
 

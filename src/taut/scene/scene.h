@@ -77,7 +77,7 @@ struct Scene {
   std::string title;             // one line, shown in reports and pictures
   std::filesystem::path folder;  // of the scene file
   TimeOptions time;
-  SolverOptions solver;
+  SolverOptions solver{.name = "auto"};
   ContactOptions contact;
   Vec3 gravity = Vec3(0, 0, -9.81);  // m/s²
   Wind wind;

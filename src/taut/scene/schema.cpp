@@ -14,6 +14,7 @@ namespace taut {
 namespace {
 
 constexpr std::array integrator_names{"semi_implicit_euler", "imex", "bdf2", "newton"};
+constexpr std::array core_names{"stretch", "auto"};
 constexpr std::array reordering_names{"vectors", "matrix"};
 
 void describe_time(SchemaVisitor& v, TimeOptions& time) {
@@ -51,12 +52,26 @@ std::string unknown_solver(const std::string& name) {
                      near.empty() ? "" : "; did you mean '" + near + "'?");
 }
 
+KeyInfo core_info(bool unset) {
+  return {.doc = "which springs make the matrix core: `stretch`, as in the paper, or `auto`, those whose strength would cost iterations, of any "
+                 "class; when not given: `auto` for the solver `auto`, `stretch` for all others",
+          .unset = unset};
+}
+
 void describe_solver(SchemaVisitor& v, SolverOptions& solver) {
   v.text("name", solver.name, {.doc = "METHOD or METHOD:PRECONDITIONER, as `--solver`; `core_pcg` is the paper's"});
   if (!is_solver_name(solver.name)) v.check(false, "name", unknown_solver(solver.name));
   v.number("tolerance", solver.tolerance,
            {.doc = "stop when δ <= tolerance² δ0 (Ascher & Boxerman); smaller is more accurate", .min = 1e-14, .max = 0.5});
   v.integer("max_iterations", solver.max_iterations, {.doc = "0: ten times the number of unknowns, at least 1000", .min = 0, .max = 1e9});
+  if (v.given("core", !solver.core.empty())) {
+    int core = solver.core == core_names[1] ? 1 : 0;
+    v.choose("core", core, core_names, core_info(false));
+    solver.core = core_names[static_cast<std::size_t>(core)];
+  } else {
+    int none = 0;
+    v.choose("core", none, core_names, core_info(true));
+  }
   std::string& reordering = solver.reordering;
   int index = reordering == reordering_names[1] ? 1 : 0;
   v.choose("reordering", index, reordering_names,

@@ -9,7 +9,6 @@
 #include "taut/base/timer.h"
 #include "taut/force/overshoot.h"
 #include "taut/linalg/sparse_cholesky.h"
-#include "taut/solve/core_bound.h"
 
 namespace taut {
 
@@ -21,8 +20,6 @@ SolverOptions fallback_options(const SolverOptions& options) {
   return direct;
 }
 
-bool has_core(const std::string& solver) { return solver.starts_with("core_pcg") || solver == "core_fast"; }
-
 }  // namespace
 
 Simulation::Simulation(Scene scene)
@@ -30,10 +27,13 @@ Simulation::Simulation(Scene scene)
       cloth_(scene_),
       contact_(scene_.solids, cloth_.nodes(), scene_.contact),
       stepper_(cloth_.nodes(), cloth_.force_models(), cloth_.external(), scene_.time.integrator, scene_.solver, scene_.time.newton),
-      state_(cloth_.start()),
-      has_core_(has_core(scene_.solver.name)) {}
+      state_(cloth_.start()) {
+  // Halved steps keep the core of whole ones, and its symbolic work.
+  stepper_.choose_core(scene_.time.step);
+}
 
-void Simulation::restore(State state, ContactState contacts, int steps) {
+void Simulation::restore(State state, ContactState contacts, int steps, std::span<const double> solver_memory) {
+  stepper_.solver().restore_memory(solver_memory);
   state_ = std::move(state);
   contact_.restore(std::move(contacts));
   steps_ = steps;
@@ -121,7 +121,6 @@ void Simulation::accept(StepRecord& record) {
 }
 
 Status Simulation::solve_passes(StepRecord& record) {
-  const double rho = has_core_ ? stepper_.remainder_ratio() : 0.0;
   SolveSummary summary;
   for (bool again = true; again;) {
     constraints_ = pins_;
@@ -131,7 +130,7 @@ Status Simulation::solve_passes(StepRecord& record) {
     const double assembled = stepper_.assemble_ms();
     summary = solve_or_fall_back(record);
     record.assemble_ms += stepper_.assemble_ms() - assembled;
-    note_solve(summary, rho, record);
+    note_solve(summary, record);
     ++record.contact_passes;
     if (!summary.status.ok()) return summary.status;
     contact_timer.lap();
@@ -156,8 +155,8 @@ SolveSummary Simulation::solve_or_fall_back(StepRecord& record) {
   return summary;
 }
 
-void Simulation::note_solve(const SolveSummary& summary, double rho, StepRecord& record) const {
-  record.solver = summary.solver;
+void Simulation::note_solve(const SolveSummary& summary, StepRecord& record) const {
+  record.solver = summary.method;
   record.newton_iterations += stepper_.newton_iterations();
   record.fallbacks += summary.fallbacks;
   if (record.contact_passes == 0 || summary.precision == std::string_view("double")) record.precision = summary.precision;
@@ -166,10 +165,8 @@ void Simulation::note_solve(const SolveSummary& summary, double rho, StepRecord&
   record.order_ms += summary.order_ms;
   record.factor_ms += summary.factor_ms;
   record.solve_ms += summary.solve_ms + summary.reduce_ms;
-  if (has_core_ && has_core(summary.solver)) {
-    record.core_springs = stepper_.core_springs();
-    record.bound_iterations = std::max(record.bound_iterations, core_iteration_bound(rho, summary.start_value, scene_.solver.tolerance));
-  }
+  if (summary.method.starts_with("core_")) record.core_springs = stepper_.core_springs();
+  record.bound_iterations = std::max(record.bound_iterations, summary.bound_iterations);
 }
 
 void Simulation::note_state(StepRecord& record) const {

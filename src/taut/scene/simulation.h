@@ -54,10 +54,11 @@ class Simulation {
   int steps_done() const { return steps_; }
   const SolidContact& contact() const { return contact_; }
   Stepper& stepper() { return stepper_; }
+  const Stepper& stepper() const { return stepper_; }
   const ConstraintSet& constraints() const { return constraints_; }
 
   // Goes on from a checkpoint.
-  void restore(State state, ContactState contacts, int steps);
+  void restore(State state, ContactState contacts, int steps, std::span<const double> solver_memory = {});
   // Called after the last pass of a step, before it is committed: the solved system is in stepper().system(). For dumps and benches.
   // A step that is then redone in halves calls it once, for the whole.
   std::function<void(Simulation&, const SolveSummary&)> on_solved;
@@ -70,7 +71,7 @@ class Simulation {
   double overshoot() const;
   Status solve_passes(StepRecord& record);
   SolveSummary solve_or_fall_back(StepRecord& record);
-  void note_solve(const SolveSummary& summary, double rho, StepRecord& record) const;
+  void note_solve(const SolveSummary& summary, StepRecord& record) const;
   void note_state(StepRecord& record) const;
 
   Scene scene_;
@@ -82,7 +83,6 @@ class Simulation {
   State state_;
   SolveSummary last_summary_;
   int steps_ = 0;
-  bool has_core_;
 };
 
 }  // namespace taut

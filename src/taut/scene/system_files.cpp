@@ -7,6 +7,7 @@
 #include "taut/base/error.h"
 #include "taut/io/matrix_market.h"
 #include "taut/scene/stored_constraints.h"
+#include "taut/solve/core_bound.h"
 
 namespace taut {
 
@@ -42,7 +43,8 @@ SystemFiles files_of_dump(const fs::path& folder) {
     throw InputError({folder.string()},
                      "has no meta.json: it is not a dump, or one that was interrupted; write it with `taut dump`, or use --matrix A.mtx");
   const auto if_there = [&](const char* name) { return fs::exists(folder / name) ? folder / name : fs::path(); };
-  return {folder / "A.mtx", folder / "b.mtx", folder / "U.mtx", folder / "z.mtx", if_there("A_core.mtx"), if_there("guess.mtx"), if_there("x.mtx"), true};
+  return {folder / "A.mtx", folder / "b.mtx", folder / "U.mtx", folder / "z.mtx", if_there("A_core.mtx"), if_there("guess.mtx"), if_there("x.mtx"),
+          if_there("M.mtx"), true};
 }
 
 StoredSystem::StoredSystem(const SystemFiles& files) : matrix_(to_system_matrix(read_matrix_market(files.matrix), files.matrix.string())) {
@@ -58,6 +60,7 @@ StoredSystem::StoredSystem(const SystemFiles& files) : matrix_(to_system_matrix(
   if (!files.guess.empty()) guess_ = read_vector(files.guess, n);
   if (!files.positions.empty()) positions_ = read_vector(files.positions, n);
   if (!files.core.empty()) read_core(files.core);
+  if (!files.core.empty() && !files.masses.empty()) read_masses(files.masses);
 }
 
 void StoredSystem::read_constraints(const SystemFiles& files) {
@@ -104,12 +107,22 @@ void StoredSystem::read_core(const fs::path& path) {
         }
 }
 
+void StoredSystem::read_masses(const fs::path& path) {
+  const std::vector<double> of_unknowns = read_vector(path, matrix_.dofs());
+  std::vector<double> masses;
+  for (std::size_t i = 0; i < of_unknowns.size(); i += 3) masses.push_back(of_unknowns[i]);
+  for (const double m : masses)
+    if (!(m > 0.0)) throw InputError({path.string()}, fmt::format("holds {:.9g}: masses are positive", m));
+  rho_ = remainder_ratio(matrix_, core_, masses);
+}
+
 LinearSystem StoredSystem::system() const {
   LinearSystem system;
   system.matrix = &matrix_;
   system.rhs = rhs_;
   system.guess = guess_;
   system.core = core_;
+  system.rho = rho_;
   system.positions = positions_;
   if (constraints_) {
     system.constraints = &*constraints_;

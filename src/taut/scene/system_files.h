@@ -7,6 +7,7 @@
 //   z            the prescribed part of the solution; not given: 0. Only with constraints
 //   core         a matrix made of some of A's entries, its whole diagonal (blocks) among them: what core_pcg factorises
 //   guess        where iterative solvers start; not given: 0
+//   masses       M: then ρ of the core is known, which bounds corePCG's iterations
 //   positions    of the nodes, for multigrid's rotations; not given: it does without
 //
 // With constraints, or from a dump, a node is three consecutive rows and A gets 3x3 blocks; else each row is a node of its own.
@@ -20,7 +21,7 @@
 namespace taut {
 
 struct SystemFiles {
-  std::filesystem::path matrix, rhs, constraints, z, core, guess, positions;  // empty: not given
+  std::filesystem::path matrix, rhs, constraints, z, core, guess, positions, masses;  // empty: not given
   bool nodes_of_three = false;                                     // constraints imply it
 };
 
@@ -37,11 +38,13 @@ class StoredSystem {
  private:
   void read_constraints(const SystemFiles& files);
   void read_core(const std::filesystem::path& path);
+  void read_masses(const std::filesystem::path& path);
 
   BlockCsr matrix_;
   std::vector<double> rhs_, z_, guess_, positions_;
   std::optional<ConstraintSet> constraints_;
   std::vector<std::uint8_t> core_;
+  double rho_ = -1.0;
 };
 
 }  // namespace taut

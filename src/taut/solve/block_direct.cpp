@@ -29,6 +29,8 @@ void BlockDirect::run(const LinearSystem& system, std::span<double> x, SolveSumm
   initial_guess(from_rest, x);
   add_scaled(1.0, free_part_, x);
   summary.solve_ms = timer.lap();
+  summary.factor_nonzeros = factor_.statistics().nonzeros;
+  summary.factor_flops = factor_.statistics().flops;
   summary.memory_bytes = factor_.statistics().bytes + 2.0 * sizeof(double) * static_cast<double>(x.size());
 }
 

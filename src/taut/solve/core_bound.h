@@ -6,7 +6,17 @@
 //
 // It holds in exact arithmetic for elements of two nodes.
 
+#include <cstdint>
+#include <span>
+
+#include "taut/linalg/block_csr.h"
+
 namespace taut {
+
+// ρ of a cloth matrix of 3x3 blocks and its core (one byte a block, 1: in the core); masses: kg, one a node. Every element's block rows sum
+// to zero, so D_R,i = -Σ A_ij over the blocks outside the core, whatever the elements. Rounded upwards. Parallel, allocates one double a
+// node.
+double remainder_ratio(const BlockCsr& a, std::span<const std::uint8_t> core, std::span<const double> masses);
 
 int core_iteration_bound(double rho, double start_value, double tolerance);
 

@@ -8,6 +8,7 @@
 #include "taut/base/parallel.h"
 #include "taut/base/timer.h"
 #include "taut/linalg/vector_ops.h"
+#include "taut/solve/core_bound.h"
 #include "taut/solve/full_space.h"
 #include "taut/solve/preconditioner_choice.h"
 #include "taut/solve/reduced_pcg.h"
@@ -163,6 +164,9 @@ void CoreFast::run(const LinearSystem& system, std::span<double> x, SolveSummary
     summary.solve_ms += timer.lap();
   }
   take_over(result, summary);
+  if (system.rho >= 0.0) summary.bound_iterations = core_iteration_bound(system.rho, summary.start_value, options_.tolerance);
+  summary.factor_nonzeros = factor_.statistics().nonzeros;
+  summary.factor_flops = factor_.statistics().flops;
   summary.memory_bytes = factor_.statistics().bytes + 4.0 * sizeof(double) * static_cast<double>(x.size());
 }
 

@@ -74,10 +74,13 @@ void CorePcg::run(const LinearSystem& system, std::span<double> x, SolveSummary&
     loop_in_factor_order(system, x, summary);
   } else {
     const FactorPreconditioner m(*cholesky_, false);
-    reduced_pcg(system, reduced_, m, options_.tolerance, iteration_limit(reduced_.matrix().dofs()), observer, x, summary);
+    reduced_pcg(system, reduced_, m, options_.tolerance, iteration_limit(reduced_.matrix().dofs()), observer, x, summary,
+                coefficients);
   }
   summary.solve_ms = timer.lap();
   if (system.rho >= 0.0) summary.bound_iterations = core_iteration_bound(system.rho, summary.start_value, options_.tolerance);
+  summary.factor_nonzeros = cholesky_->statistics().nonzeros;
+  summary.factor_flops = cholesky_->statistics().flops;
   summary.memory_bytes = static_cast<double>(reduced_.matrix().bytes() + core_.matrix().bytes()) + cholesky_->statistics().bytes;
 }
 
@@ -91,7 +94,7 @@ void CorePcg::loop_in_factor_order(const LinearSystem& system, std::span<double>
     reduced_.prolong_to(system, x);
   };
   for (std::size_t k = 0; k < n; ++k) b[k] = reduced_.rhs()[perm[k]], y[k] = reduced_.solution()[perm[k]];
-  KrylovOptions options{options_.tolerance, iteration_limit(static_cast<Index>(n)), {}};
+  KrylovOptions options{options_.tolerance, iteration_limit(static_cast<Index>(n)), {}, coefficients};
   if (observer)
     options.observer = [&](int iteration, double value, std::span<const double> ordered) {
       scatter(ordered);

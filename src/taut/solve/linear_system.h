@@ -38,18 +38,22 @@ struct LinearSystem {
 // What a solve did. Times in milliseconds.
 struct SolveSummary {
   std::string solver;
+  std::string method;  // the solver itself, or what `auto` chose
   Status status;
-  int iterations = 0;                // 0 for direct methods
-  double stop_value = 0.0;           // iterative: sqrt(δ/δ0) at the end (residual ratio for BiCGSTAB)
-  double start_value = 0.0;          // the same for the initial guess
-  int bound_iterations = -1;         // core PCG: what they cannot exceed (solve/core_bound.h); -1: no bound known
-  double relative_residual = 0;      // true one, recomputed from A, b, x: |S(b - A x)| / |S(b - A(I-S)z)|; not what the method believes
-  double reduce_ms = 0.0;            // forming Ã, b̃ and the core
-  double order_ms = 0.0;             // analysis (ordering and symbolic work)
-  double factor_ms = 0.0;            // numerical factorisation or other set-up of the preconditioner
-  double solve_ms = 0.0;             // the loop, or the triangular solves
+  int iterations = 0;            // 0 for direct methods
+  double stop_value = 0.0;       // iterative: sqrt(δ/δ0) at the end (residual ratio for BiCGSTAB)
+  double start_value = 0.0;      // the same for the initial guess
+  int bound_iterations = -1;     // core PCG: what they cannot exceed (solve/core_bound.h); -1: no bound known
+  double relative_residual = 0;  // true one, recomputed from A, b, x: |S(b - A x)| / |S(b - A(I-S)z)|; not what the method believes
+  double reduce_ms = 0.0;        // forming Ã, b̃ and the core
+  double order_ms = 0.0;         // analysis (ordering and symbolic work)
+  double factor_ms = 0.0;        // numerical factorisation or other set-up of the preconditioner
+  double solve_ms = 0.0;         // the loop, or the triangular solves
+  double factor_nonzeros = 0.0;  // entries of the sparse Cholesky factor, and operations to form it; 0 where there is none
+  double factor_flops = 0.0;
+  int preparations = 1;              // of the preconditioner: more than one where IC(0) had to find a shift
   const char* precision = "double";  // of the factor that the answer came from: "single" or "double"
-  int fallbacks = 0;                 // times that single precision failed and double precision took over
+  int fallbacks = 0;                 // times that single precision, or a method that `auto` tried first, failed and another took over
   double memory_bytes = 0.0;         // what the method holds beyond A and the vectors
   std::string remark;                // "on eigen: CHOLMOD is not built in", ...
   double total_ms() const { return reduce_ms + order_ms + factor_ms + solve_ms; }

@@ -10,8 +10,8 @@ void take_over(const KrylovResult& result, SolveSummary& summary) {
 }
 
 void reduced_pcg(const LinearSystem& system, ReducedSystem& reduced, const Preconditioner& m, double tolerance, int max_iterations,
-                 const SolveObserver& observer, std::span<double> x, SolveSummary& summary) {
-  KrylovOptions options{tolerance, max_iterations, {}};
+                 const SolveObserver& observer, std::span<double> x, SolveSummary& summary, CgCoefficients* coefficients) {
+  KrylovOptions options{tolerance, max_iterations, {}, coefficients};
   if (observer)
     options.observer = [&](int iteration, double value, std::span<const double> y) {
       prolong(system.constraints, y, system.z, x);

@@ -14,6 +14,7 @@
 #include "taut/linalg/vector_ops.h"
 #include "taut/solve/block_direct.h"
 #include "taut/solve/core_fast.h"
+#include "taut/solve/auto_solver.h"
 #include "taut/solve/core_pcg.h"
 #include "taut/solve/direct.h"
 #include "taut/solve/eq10.h"
@@ -68,6 +69,8 @@ const Entry entries[] = {
     {"core_pcg", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<CorePcg>(o, ""); }, nullptr},
     {"core_pcg:cholmod", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<CorePcg>(o, "cholmod"); }, "cholmod"},
     {"core_pcg:eigen", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<CorePcg>(o, "eigen"); }, nullptr},
+    {"core_pcg:block", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<CorePcg>(o, "block"); }, nullptr},
+    {"auto", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<AutoSolver>(o); }, nullptr},
     {"core_pcg:pardiso", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<CorePcg>(o, "pardiso"); }, "pardiso"},
 };
 
@@ -118,6 +121,10 @@ std::vector<std::string> solver_names() {
 
 bool is_solver_name(const std::string& name) { return find_entry(name) != nullptr; }
 
+void ConstrainedSolver::restore_memory(std::span<const double> memory) {
+  if (!memory.empty()) throw InputError(fmt::format("the stored memory of a solver does not belong to '{}'", options_.name));
+}
+
 int ConstrainedSolver::iteration_limit(Index unknowns) const {
   if (options_.max_iterations > 0) return options_.max_iterations;
   return static_cast<int>(std::min<std::int64_t>(1'000'000, std::max<std::int64_t>(1000, 10 * std::int64_t{unknowns})));
@@ -127,7 +134,7 @@ SolveSummary ConstrainedSolver::solve(const LinearSystem& system, std::span<doub
   assert(system.matrix && system.rhs.size() == x.size() && static_cast<Index>(x.size()) == system.matrix->dofs());
   assert(!system.constraints || system.z.size() == x.size());
   SolveSummary summary;
-  summary.solver = options_.name;
+  summary.solver = summary.method = options_.name;
   if (!all_finite(system.rhs) || !all_finite(system.z)) {
     summary.status = {Outcome::not_finite, "the right-hand side holds NaN or infinity"};
     initial_guess(system, x);

@@ -9,6 +9,8 @@
 #include "taut/base/timer.h"
 #include "taut/constraint/reduction.h"
 #include "taut/linalg/vector_ops.h"
+#include "taut/solve/core_bound.h"
+#include "taut/solve/core_choice.h"
 #include "taut/step/newton.h"
 
 namespace taut {
@@ -41,25 +43,44 @@ Stepper::Stepper(Index nodes, std::vector<const ForceModel*> models, ExternalFor
       assembler_(nodes, models_, implicit_models(models_, *integrator_)),
       solver_(make_solver(solver)),
       newton_(newton),
-      core_(assembler_.core_mask(ForceClass::stretch)),
+      chooses_core_(solver.chooses_core()),
+      wants_rho_(solver.name == "auto" || solver.name.starts_with("core_")),
+      core_(stretch_core()),
+      core_springs_(assembler_.elements_in(core_)),
       a_(assembler_.pattern()) {
-  for (const ForceModel* model : models_)
-    if (model->force_class() == ForceClass::stretch) core_springs_ += model->block_count();
   if (integrator_->is_nonlinear()) relinearised_a_ = a_;
   current_a_ = &a_;
   const std::size_t n = static_cast<std::size_t>(nodes);
   for (auto* field : {&b_, &rhs_, &z_, &unknown_, &x_end_, &v_end_, &impulse_}) field->assign(n, Vec3::Zero());
 }
 
+std::vector<std::uint8_t> Stepper::chosen_core(double h) const {
+  // An integrator's first step has the largest coefficients.
+  const State first;
+  return taut::choose_core(
+      *assembler_.pattern(),
+      assembler_.block_bounds(integrator_->stiffness_coefficient(first, h), integrator_->damping_coefficient(first, h)),
+      external_.masses());
+}
+
+void Stepper::choose_core(double h) {
+  core_h_ = h;
+  if (!chooses_core_) return;
+  core_ = chosen_core(h);
+  core_springs_ = assembler_.elements_in(core_);
+}
+
 void Stepper::begin(const State& state, double h) {
   Timer timer;
   state_ = &state;
   h_ = h;
+  if (h > core_h_) choose_core(h);
   external_.evaluate(state.time, state.x, state.v);
   integrator_->assemble(assembler_, external_, state, h, a_, b_);
   guess_ = state.last;
   current_guess_ = guess_;
   current_a_ = &a_;
+  if (wants_rho_) rho_ = first_rho_ = remainder_ratio();
   assemble_ms_ = timer.milliseconds();
 }
 
@@ -72,6 +93,7 @@ SolveSummary Stepper::solve(const ConstraintSet& constraints, std::span<const Ve
   for (std::size_t i = 0; i < impulses.size(); ++i) rhs_[i] += per_impulse * impulses[i];
   integrator_->prescribe(constraints, *state_, h_, z_);
   current_a_ = &a_;
+  rho_ = first_rho_;
   current_guess_ = guess_;
   newton_iterations_ = 0;
   SolveSummary summary = solver.solve(system(), flat(unknown_));
@@ -121,6 +143,7 @@ double Stepper::relinearise(const ConstraintSet& constraints, std::span<const Ve
   const double per_impulse = integrator_->rhs_per_impulse(*state_, h_);
   for (std::size_t i = 0; i < given_.size(); ++i) rhs_[i] += per_impulse * given_[i];
   current_a_ = &relinearised_a_;
+  if (wants_rho_) rho_ = remainder_ratio();
   multiply(relinearised_a_, flat(unknown), flat(impulse_));
   for (std::size_t i = 0; i < rhs_.size(); ++i) impulse_[i] = rhs_[i] - impulse_[i];
   assemble_ms_ += timer.milliseconds();
@@ -136,6 +159,8 @@ double Stepper::free_norm(const ConstraintSet& constraints, std::span<const Vec3
   }));
 }
 
+double Stepper::remainder_ratio() const { return taut::remainder_ratio(*current_a_, core_, external_.masses()); }
+
 LinearSystem Stepper::system() const {
   LinearSystem system;
   system.matrix = current_a_;
@@ -144,6 +169,7 @@ LinearSystem Stepper::system() const {
   system.z = flat(z_);
   system.guess = flat(current_guess_);
   system.core = core_;
+  system.rho = rho_;
   if (state_) system.positions = flat(state_->x);
   return system;
 }

@@ -20,10 +20,13 @@ namespace taut {
 
 class Stepper {
  public:
-  // models: not owned. core_class: which springs make the matrix core.
+  // models: not owned. Whether the core is the stretch springs or chosen is the solver's option.
   Stepper(Index nodes, std::vector<const ForceModel*> models, ExternalForces external, IntegratorKind integrator, SolverOptions solver,
           NewtonOptions newton = {});
 
+  // Chooses the core for steps of up to h (s), whose coefficients are the largest: it then stays the same, and valid, in shorter steps. Not
+  // called: begin() does it with the longest h so far.
+  void choose_core(double h);
   void begin(const State& state, double h);
   SolveSummary solve(const ConstraintSet& constraints, std::span<const Vec3> impulses) { return solve(constraints, impulses, *solver_); }
   // The same with another solver than the step's own.
@@ -46,6 +49,7 @@ class Stepper {
   // Linear solves of the last solve() after its first; 0 unless the integrator is nonlinear.
   int newton_iterations() const { return newton_iterations_; }
   std::span<const std::uint8_t> core_mask() const { return core_; }
+  // Elements whose blocks off the diagonal are in the core.
   Index core_springs() const { return core_springs_; }
   std::span<const Vec3> unknown() const { return unknown_; }
   // The impulses that the last solve was given, N s; empty if none.
@@ -53,9 +57,14 @@ class Stepper {
   const Integrator& integrator() const { return *integrator_; }
   const ExternalForces& external() const { return external_; }
   Assembler& assembler() { return assembler_; }
+  ConstrainedSolver& solver() { return *solver_; }
+  const ConstrainedSolver& solver() const { return *solver_; }
   double assemble_ms() const { return assemble_ms_; }
   // ρ of MATH.md section 5 for the assembled system and its core.
-  double remainder_ratio() const { return assembler_.remainder_ratio(core_, external_.masses()); }
+  double remainder_ratio() const;
+  // The two cores that a solver may be given, for steps of up to h: all stretch springs, or those that are strong (solve/core_choice.h).
+  std::vector<std::uint8_t> stretch_core() const { return assembler_.core_mask(ForceClass::stretch); }
+  std::vector<std::uint8_t> chosen_core(double h) const;
 
  private:
   SolveSummary solve_nonlinear(const ConstraintSet& constraints, ConstrainedSolver& solver, SolveSummary first);
@@ -69,6 +78,9 @@ class Stepper {
   Assembler assembler_;
   std::unique_ptr<ConstrainedSolver> solver_;
   NewtonOptions newton_;
+  bool chooses_core_, wants_rho_;
+  double core_h_ = 0.0;
+  double rho_ = -1.0, first_rho_ = -1.0;  // of current_a_ and a_; negative: not asked for
   std::vector<std::uint8_t> core_;
   Index core_springs_ = 0;
 

@@ -1,0 +1,149 @@
+// The solver `auto`: right in every regime, settled on little counted work, the same choices from the same memory, and never stuck.
+
+#include "taut/solve/auto_solver.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "solve/material_sheet.h"
+#include "taut/base/error.h"
+#include "taut/solve/reference.h"
+
+namespace taut::test {
+namespace {
+
+// Right-hand sides of a slowly changing motion, each starting from the last solution.
+struct Steps {
+  MaterialSheet sheet;
+  std::unique_ptr<ConstrainedSolver> solver;
+  std::vector<double> x;
+  std::vector<double> base;
+
+  Steps(const Material& material, std::uint32_t seed, double tolerance = 1e-3)
+      : sheet(material, seed), solver(make_solver(solver_options("auto", tolerance))), x(sheet.b.size()), base(sheet.b) {
+    sheet.hold_some();
+  }
+  SolveSummary next(int step) {
+    for (std::size_t i = 0; i < base.size(); ++i) sheet.b[i] = base[i] * (1.0 + 0.3 * std::sin(0.2 * step + 0.01 * static_cast<double>(i)));
+    sheet.guess = x;
+    return solver->solve(sheet.with_core(sheet.chosen), x);
+  }
+};
+
+TEST(AutoSolver, SolvesEveryRegimeToTheAccuracyOfCorePcg) {
+  std::uint32_t seed = 60;
+  std::set<std::string> methods;
+  for (const double h : {1e-3, 3.67e-3, 16.7e-3, 33e-3})
+    for (const double k_shear : {0.3, 30.0, 600.0})
+      for (const double k_stretch : {60.0, 6000.0, 6e6}) {
+        Steps steps({.k_stretch = k_stretch, .k_shear = k_shear, .k_bend = k_shear / 10, .h = h, .graded = ++seed % 2 == 0}, seed);
+        SCOPED_TRACE(steps.sheet.material.describe());
+        for (int step = 0; step < 8; ++step) {
+          const SolveSummary summary = steps.next(step);
+          ASSERT_TRUE(summary.status.ok()) << summary.status.message;
+          EXPECT_EQ(summary.solver, "auto");
+          EXPECT_TRUE(is_solver_name(summary.method)) << summary.method;
+          if (summary.method.starts_with("core")) {
+            EXPECT_LE(summary.iterations, summary.bound_iterations);
+          }
+          EXPECT_EQ(summary.fallbacks, 0) << summary.remark;
+          const LinearSystem system = steps.sheet.with_core(steps.sheet.chosen);
+          EXPECT_LT(anorm_error(system, steps.x, reference_solution(system)), 1e-2) << summary.remark;
+          methods.insert(summary.method);
+        }
+      }
+  EXPECT_GE(methods.size(), 3u) << "one method for all";
+}
+
+TEST(AutoSolver, SoftClothNeedsNoFactorAndStiffClothDoes) {
+  const auto settled = [](const Material& material) {
+    Steps steps(material, 61);
+    SolveSummary summary;
+    for (int step = 0; step < 12; ++step) summary = steps.next(step);
+    return summary.method;
+  };
+  EXPECT_EQ(settled({.k_stretch = 1, .k_shear = 0.1, .k_bend = 0.05, .h = 1e-3, .nodes = 41}), "upcg:block_diagonal");
+  EXPECT_EQ(settled({.k_stretch = 6e6, .k_shear = 0.3, .k_bend = 0.05, .h = 16.7e-3, .nodes = 41}), auto_core_method);
+}
+
+// The last of twelve solves costs, by the counts, little more than the cheapest of the methods alone would.
+TEST(AutoSolver, SettlesNearTheLeastCountedWork) {
+  for (const double k_stretch : {6.0, 600.0, 6e4})
+    for (const double h : {1e-3, 5e-3}) {
+      Steps steps({.k_stretch = k_stretch, .h = h, .nodes = 31}, 62);
+      SCOPED_TRACE(steps.sheet.material.describe());
+      SolveSummary last;
+      for (int step = 0; step < 12; ++step) last = steps.next(step);
+      LinearSystem system = steps.sheet.with_core(steps.sheet.chosen);
+      const SystemSize size = size_of(system);
+      double least = 1e300, taken = 1e300;
+      for (const std::string name : {auto_core_method, "upcg:block_diagonal", "upcg:ic0_core", "upcg:ic0", "block_cholesky"}) {
+        std::vector<double> x(steps.x.size());
+        // The guess is last step's solution as in `auto`, no worse: what steps.x holds is this step's.
+        system.guess = steps.sheet.guess;
+        const SolveSummary s = make_solver(solver_options(name, 1e-3))->solve(system, x);
+        const FactorSize factor{s.factor_nonzeros, s.factor_flops};
+        const MethodWork work = name == auto_core_method        ? core_work(size, factor)
+                                : name == "upcg:block_diagonal" ? block_diagonal_work(size)
+                                : name == "upcg:ic0_core"       ? incomplete_work(size, size.core_nonzeros, s.preparations)
+                                : name == "upcg:ic0"            ? incomplete_work(size, size.nonzeros, s.preparations)
+                                                                : direct_work(factor);
+        const double total = work.total(s.iterations);
+        least = std::min(least, total);
+        if (name == last.method) taken = work.total(last.iterations);
+      }
+      EXPECT_LE(taken, 1.7 * least) << last.method << ", " << last.iterations << " iterations";
+    }
+}
+
+TEST(AutoSolver, TheSameMemoryMakesTheSameChoices) {
+  for (const int until : {0, 1, 3, 9, 30}) {
+    const Material material{.k_stretch = 300, .h = 3e-3, .nodes = 21};
+    Steps first(material, 63), second(material, 63);
+    for (int step = 0; step < until; ++step) first.next(step);
+    second.x = first.x;
+    second.solver->restore_memory(first.solver->memory());
+    for (int step = until; step < until + 20; ++step) {
+      const SolveSummary a = first.next(step), b = second.next(step);
+      EXPECT_EQ(a.method, b.method);
+      EXPECT_EQ(a.iterations, b.iterations);
+      EXPECT_TRUE(first.x == second.x) << "step " << step << " after " << until;
+    }
+    EXPECT_EQ(first.solver->memory(), second.solver->memory());
+  }
+}
+
+TEST(AutoSolver, RefusesAForeignMemory) {
+  const auto solver = make_solver(solver_options("auto", 1e-3));
+  EXPECT_THROW(solver->restore_memory(std::vector<double>{99.0, 1.0}), InputError);
+  EXPECT_THROW(solver->restore_memory(std::vector<double>{1.0, 1.0, 2.0}), InputError);
+  EXPECT_THROW(make_solver(solver_options("mpcg", 1e-3))->restore_memory(solver->memory()), InputError);
+  EXPECT_NO_THROW(make_solver(solver_options("mpcg", 1e-3))->restore_memory({}));
+}
+
+// A positive definite matrix whose core is not: [1 1 1; 1 1 1; 1 1 1] + I/10 without its corner.
+TEST(AutoSolver, GoesDirectWhereTheCoreFailsAndRemembersIt) {
+  BlockCsr a(make_pattern({{1, 2}, {0, 2}, {0, 1}}, 1));
+  for_each_entry(a, [](Index r, Index c, double& value) { value = r == c ? 1.1 : 1.0; });
+  std::vector<std::uint8_t> core(9, 1);
+  core[a.pattern->find(0, 2)] = core[a.pattern->find(2, 0)] = 0;
+  const std::vector<double> b{1.0, -2.0, 0.5};
+  LinearSystem system;
+  system.matrix = &a, system.rhs = b, system.core = core;
+  const auto solver = make_solver(solver_options("auto", 1e-6));
+  for (int step = 0; step < 5; ++step) {
+    std::vector<double> x(3);
+    const SolveSummary summary = solver->solve(system, x);
+    ASSERT_TRUE(summary.status.ok()) << summary.status.message;
+    EXPECT_EQ(summary.fallbacks > 0, step == 0) << summary.remark;
+    EXPECT_LT(relative_difference(x, dense(a).llt().solve(as_eigen(b))), 1e-5);
+    if (step == 0) {
+      EXPECT_EQ(summary.method, "block_cholesky");
+      EXPECT_NE(summary.remark.find(std::string(auto_core_method) + " failed"), std::string::npos) << summary.remark;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace taut::test

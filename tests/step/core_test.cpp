@@ -1,0 +1,81 @@
+// The core that a stepper hands to its solver: whichever is asked for, the same from step to step, with its ρ.
+
+#include <gtest/gtest.h>
+
+#include "taut/force/cloth_springs.h"
+#include "taut/solve/core_bound.h"
+#include "taut/step/stepper.h"
+
+namespace taut {
+namespace {
+
+struct Cloth {
+  GridShape shape{.nu = 9, .nv = 8, .u = 0.2 * Vec3::UnitX(), .v = 0.175 * Vec3::UnitZ()};
+  std::vector<std::unique_ptr<SpringModel>> springs;
+  State state;
+  std::vector<double> masses;
+  ConstraintSet constraints;
+
+  Cloth() {
+    const std::vector<Vec3> rest = make_grid(shape).positions;
+    SpringMaterial material{.k_stretch = 6000, .k_shear = 5, .k_bend = 0.05};
+    material.compression = Compression::linear;
+    springs = grid_springs(shape, rest, material, 0, "sheet");
+    state.x = rest, state.v.assign(rest.size(), Vec3(0.1, 0.2, 0.3));
+    for (std::size_t i = 0; i < rest.size(); ++i) state.x[i].y() += 0.01 * std::sin(static_cast<double>(i));
+    masses.assign(rest.size(), 9.5e-6);
+    constraints.reset(shape.node_count());
+    constraints.fix(0, Vec3::Zero());
+  }
+  Stepper stepper(const std::string& solver, const std::string& core, IntegratorKind integrator = IntegratorKind::semi_implicit_euler) {
+    std::vector<const ForceModel*> models;
+    for (const auto& model : springs) models.push_back(model.get());
+    SolverOptions options;
+    options.name = solver, options.core = core;
+    return Stepper(shape.node_count(), models, ExternalForces(masses, Vec3(0, 0, -9.81), {}), integrator, options);
+  }
+};
+
+std::vector<std::uint8_t> mask_of(const Stepper& stepper) { return {stepper.core_mask().begin(), stepper.core_mask().end()}; }
+
+TEST(StepperCore, IsTheStretchSpringsOrChosen) {
+  Cloth cloth;
+  for (const auto& [solver, core, chosen] : {std::tuple{"core_pcg:block", "", false}, std::tuple{"core_pcg:block", "auto", true},
+                                             std::tuple{"auto", "", true}, std::tuple{"auto", "stretch", false}}) {
+    Stepper stepper = cloth.stepper(solver, core);
+    stepper.begin(cloth.state, 5e-3);
+    EXPECT_EQ(mask_of(stepper), chosen ? stepper.chosen_core(5e-3) : stepper.stretch_core()) << solver << ", " << core;
+    const Index stretch = cloth.springs[0]->block_count();
+    if (chosen) {
+      EXPECT_GT(stepper.core_springs(), stretch);
+    } else {
+      EXPECT_EQ(stepper.core_springs(), stretch);
+    }
+    EXPECT_EQ(stepper.system().rho, remainder_ratio(stepper.matrix(), stepper.core_mask(), cloth.masses));
+  }
+}
+
+TEST(StepperCore, StaysInShorterStepsAndWhateverTheClothDoes) {
+  for (const IntegratorKind kind : {IntegratorKind::semi_implicit_euler, IntegratorKind::bdf2, IntegratorKind::newton}) {
+    Cloth cloth;
+    Stepper stepper = cloth.stepper("auto", "", kind);
+    stepper.choose_core(5e-3);
+    const std::vector<std::uint8_t> core = mask_of(stepper);
+    EXPECT_NE(core, stepper.stretch_core());
+    for (const double h : {5e-3, 5e-3, 2.5e-3, 5e-3}) {
+      stepper.begin(cloth.state, h);
+      const SolveSummary summary = stepper.solve(cloth.constraints, {});
+      ASSERT_TRUE(summary.status.ok()) << summary.status.message;
+      EXPECT_LE(stepper.system().rho, 8.0 * (1.0 + 1e-6));
+      EXPECT_EQ(mask_of(stepper), core);
+      stepper.commit(cloth.state);
+    }
+    // A longer one needs more.
+    stepper.begin(cloth.state, 20e-3);
+    EXPECT_NE(mask_of(stepper), core);
+    EXPECT_LE(stepper.system().rho, 8.0 * (1.0 + 1e-6));
+  }
+}
+
+}  // namespace
+}  // namespace taut
