@@ -38,19 +38,23 @@ struct SpringRow {
   int i = 0, j = 0;
   std::string force_class;
   double rest_length = 0.0, stiffness = 0.0, damping = 0.0;
+  bool implicit = true;  // told only where the class does not tell it
 };
 
 inline std::vector<SpringRow> read_springs(const std::filesystem::path& path) {
   std::ifstream in(path);
   std::string line;
   std::getline(in, line);
-  EXPECT_EQ(line, "i,j,class,rest_length,stiffness,damping");
+  const std::string columns = "i,j,class,rest_length,stiffness,damping";
+  const bool tells_implicit = line == columns + ",implicit";
+  if (!tells_implicit) EXPECT_EQ(line, columns);
   std::vector<SpringRow> springs;
   while (std::getline(in, line)) {
     std::istringstream fields(line);
-    std::string field[6];
+    std::string field[7];
     for (std::string& f : field) std::getline(fields, f, ',');
-    springs.push_back({std::stoi(field[0]), std::stoi(field[1]), field[2], std::stod(field[3]), std::stod(field[4]), std::stod(field[5])});
+    springs.push_back({std::stoi(field[0]), std::stoi(field[1]), field[2], std::stod(field[3]), std::stod(field[4]), std::stod(field[5]),
+                       !tells_implicit || field[6] == "1"});
   }
   return springs;
 }
@@ -114,7 +118,7 @@ struct SpringSums {
   Vector f;
 };
 
-inline SpringSums sum_springs(const DumpFiles& dump, const std::string& force_class) {
+inline SpringSums sum_springs(const DumpFiles& dump, const std::string& force_class, bool implicit_only = false) {
   const Eigen::Index n = dump.x.size();
   SpringSums sums{Matrix::Zero(n, n), Matrix::Zero(n, n), Vector::Zero(n)};
   const auto add = [](Matrix& to, int i, int j, const Mat3& block) {
@@ -122,7 +126,7 @@ inline SpringSums sum_springs(const DumpFiles& dump, const std::string& force_cl
     to.block<3, 3>(3 * i, 3 * j) -= block, to.block<3, 3>(3 * j, 3 * i) -= block;
   };
   for (const SpringRow& s : dump.springs) {
-    if (s.force_class != force_class) continue;
+    if (s.force_class != force_class || (implicit_only && !s.implicit)) continue;
     const Vec3 d = dump.x.segment<3>(3 * s.j) - dump.x.segment<3>(3 * s.i), w = dump.v.segment<3>(3 * s.j) - dump.v.segment<3>(3 * s.i);
     const double length = d.norm();
     const Tension t = tension_of(s, length, dump.meta);

@@ -68,7 +68,7 @@ struct SmallSystem {
   }
 };
 
-inline constexpr std::array all_integrators{IntegratorKind::semi_implicit_euler, IntegratorKind::imex, IntegratorKind::bdf2,
+inline constexpr std::array all_integrators{IntegratorKind::semi_implicit_euler, IntegratorKind::imex, IntegratorKind::imex_adaptive, IntegratorKind::bdf2,
                                             IntegratorKind::newton};
 
 }  // namespace taut::test

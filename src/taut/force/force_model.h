@@ -49,6 +49,8 @@ class ForceModel {
  public:
   virtual ~ForceModel() = default;
   virtual ForceClass force_class() const = 0;
+  // Whether the step it was made for may leave it out of the matrix (explicit_split.h).
+  virtual bool stable_explicitly() const { return false; }
   virtual Index block_count() const = 0;
   virtual Index vector_count() const = 0;
   virtual void connect(ConnectionSink& sink) const = 0;

@@ -17,6 +17,8 @@ class SpringModel : public ForceModel {
   SpringModel(ForceClass force_class, SpringLawKind law, std::vector<Spring> springs);
 
   ForceClass force_class() const override { return class_; }
+  bool stable_explicitly() const override { return stable_explicitly_; }
+  void mark_stable_explicitly() { stable_explicitly_ = true; }
   Index block_count() const override { return static_cast<Index>(springs_.size()); }
   Index vector_count() const override { return block_count(); }
   void connect(ConnectionSink& sink) const override;
@@ -31,6 +33,7 @@ class SpringModel : public ForceModel {
  private:
   ForceClass class_;
   SpringLawKind law_;
+  bool stable_explicitly_ = false;
   std::vector<Spring> springs_;
 };
 

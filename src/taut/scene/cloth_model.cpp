@@ -2,29 +2,17 @@
 
 #include <fmt/format.h>
 
-#include <numbers>
 #include <random>
 
 #include "taut/base/error.h"
 #include "taut/force/cloth_springs.h"
-#include "taut/io/obj.h"
+#include "taut/force/explicit_split.h"
 #include "taut/mesh/topology.h"
+#include "taut/scene/cloth_shape.h"
 
 namespace taut {
 
 namespace {
-
-TriangleMesh load_shape(const Cloth& cloth, const Scene& scene) {
-  if (!cloth.from_file) return make_grid(cloth.grid);
-  const std::filesystem::path path = cloth.mesh.is_absolute() ? cloth.mesh : scene.folder / cloth.mesh;
-  TriangleMesh mesh = read_obj(path);
-  check_cloth_mesh(mesh, path.string());
-  // Y up to Z up: a quarter turn about x.
-  const Eigen::Quaterniond upright =
-      cloth.y_up ? Eigen::Quaterniond(Eigen::AngleAxisd(std::numbers::pi / 2, Vec3::UnitX())) : Eigen::Quaterniond::Identity();
-  for (Vec3& p : mesh.positions) p = upright * (cloth.scale * p);
-  return mesh;
-}
 
 std::vector<double> node_masses(const Cloth& cloth, const TriangleMesh& mesh) {
   if (cloth.node_mass > 0.0) return std::vector<double>(mesh.positions.size(), cloth.node_mass);
@@ -66,6 +54,7 @@ Vec3 PinnedNodes::target(std::size_t k, double time) const {
 ClothModel::ClothModel(const Scene& scene) {
   std::vector<double> masses;
   for (const Cloth& cloth : scene.cloths) add_cloth(cloth, scene, masses);
+  if (scene.time.integrator == IntegratorKind::imex_adaptive) springs_ = split_by_stability(std::move(springs_), masses, scene.time.step);
   start_.v.resize(start_.x.size(), Vec3::Zero());
   external_ = std::make_unique<ExternalForces>(std::move(masses), scene.gravity,
                                                WindOptions{scene.wind.velocity, scene.wind.gust, scene.wind.gust_frequency});
@@ -83,7 +72,7 @@ ClothModel::ClothModel(const Scene& scene) {
 }
 
 void ClothModel::add_cloth(const Cloth& cloth, const Scene& scene, std::vector<double>& masses) {
-  TriangleMesh mesh = load_shape(cloth, scene);
+  TriangleMesh mesh = rest_shape(cloth, scene.folder);
   ClothPart part{cloth.name, nodes(), static_cast<Index>(mesh.positions.size()), static_cast<Index>(surface_.triangles.size()),
                  static_cast<Index>(mesh.triangles.size())};
   // Rest lengths are those of the shape before placement and jitter, which only say where it starts.
@@ -94,7 +83,8 @@ void ClothModel::add_cloth(const Cloth& cloth, const Scene& scene, std::vector<d
   masses.insert(masses.end(), own_masses.begin(), own_masses.end());
   for (std::size_t i = 0; i < own_masses.size(); ++i)
     if (!(own_masses[i] > 0.0))
-      throw InputError(fmt::format("cloth '{}': vertex {} has no mass, since it is a corner of no triangle; remove it or give node_mass", cloth.name, i + 1));
+      throw InputError(fmt::format("cloth '{}': vertex {} has no mass, since it is a corner of no triangle; remove it or give node_mass",
+                                   cloth.name, i + 1));
 
   std::mt19937_64 generator(cloth.jitter_seed);
   for (const Vec3& rest : mesh.positions) {
@@ -103,7 +93,8 @@ void ClothModel::add_cloth(const Cloth& cloth, const Scene& scene, std::vector<d
       for (int c = 0; c < 3; ++c) x[c] += cloth.jitter * symmetric_random(generator);
     start_.x.push_back(x);
   }
-  for (const Triangle& t : mesh.triangles) surface_.triangles.push_back({t[0] + part.first_node, t[1] + part.first_node, t[2] + part.first_node});
+  for (const Triangle& t : mesh.triangles)
+    surface_.triangles.push_back({t[0] + part.first_node, t[1] + part.first_node, t[2] + part.first_node});
   mesh.texcoords.resize(mesh.positions.size(), Vec2::Zero());
   surface_.texcoords.insert(surface_.texcoords.end(), mesh.texcoords.begin(), mesh.texcoords.end());
   parts_.push_back(part);

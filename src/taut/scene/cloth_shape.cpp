@@ -1,17 +1,25 @@
 #include "taut/scene/cloth_shape.h"
 
 #include "taut/io/obj.h"
+#include "taut/mesh/topology.h"
 
 namespace taut {
 
-TriangleMesh start_shape(const Cloth& cloth) {
+TriangleMesh rest_shape(const Cloth& cloth, const std::filesystem::path& folder) {
   if (!cloth.from_file) return make_grid(cloth.grid);
-  TriangleMesh mesh = read_obj(cloth.mesh);
+  const std::filesystem::path path = cloth.mesh.is_absolute() ? cloth.mesh : folder / cloth.mesh;
+  TriangleMesh mesh = read_obj(path);
+  check_cloth_mesh(mesh, path.string());
   for (Vec3& x : mesh.positions) {
-    x *= cloth.scale;
     if (cloth.y_up) x = Vec3(x.x(), -x.z(), x.y());
-    x = cloth.placement.to_world(x);
+    x *= cloth.scale;
   }
+  return mesh;
+}
+
+TriangleMesh start_shape(const Cloth& cloth, const std::filesystem::path& folder) {
+  TriangleMesh mesh = rest_shape(cloth, folder);
+  for (Vec3& x : mesh.positions) x = cloth.placement.to_world(x);
   return mesh;
 }
 

@@ -95,12 +95,15 @@ void write_constraints(const fs::path& folder, const ConstraintSet& constraints)
   write_general_matrix(folder / "U.mtx", rows, column, u, "orthonormal free directions: U'U = I, UU' = S");
 }
 
-void write_springs(const fs::path& path, const ClothModel& cloth) {
-  std::string text = "i,j,class,rest_length,stiffness,damping\n";
-  for (const auto& model : cloth.springs())
+// Where springs of a class are split between implicit and explicit, a column tells which is which.
+void write_springs(const fs::path& path, const ClothModel& cloth, bool split) {
+  std::string text = split ? "i,j,class,rest_length,stiffness,damping,implicit\n" : "i,j,class,rest_length,stiffness,damping\n";
+  for (const auto& model : cloth.springs()) {
+    const char* end = !split ? "\n" : model->stable_explicitly() ? ",0\n" : ",1\n";
     for (const auto& [i, j, p] : model->springs())
-      fmt::format_to(std::back_inserter(text), "{},{},{},{:.17g},{:.17g},{:.17g}\n", i, j, name_of(model->force_class()), p.rest_length,
-                     p.stiffness, p.damping);
+      fmt::format_to(std::back_inserter(text), "{},{},{},{:.17g},{:.17g},{:.17g}{}", i, j, name_of(model->force_class()), p.rest_length,
+                     p.stiffness, p.damping, end);
+  }
   write_file(path, text);
 }
 
@@ -154,7 +157,7 @@ void write_dump(const fs::path& folder, Simulation& simulation, const SolveSumma
   write_external_damping(folder, simulation.stepper().external().damping());
   write_constraints(folder, *system.constraints);
   write_vectors(folder, simulation);
-  write_springs(folder / "springs.csv", cloth);
+  write_springs(folder / "springs.csv", cloth, simulation.scene().time.integrator == IntegratorKind::imex_adaptive);
   write_file(folder / "meta.json", dump_meta(simulation, summary));
 }
 

@@ -15,7 +15,7 @@
 //   complete
 //
 // With c_f, c_K, c_D, c_j the integrator's coefficients (step/integrator.h): A = M + c_D (D_external + D_springs) + c_K (K_stretch +
-// K_shear + K_bend), imex: springs of K_stretch only; b has c_j friction in it (c_j = 1 for an unknown dv, 4h/9 for dx).
+// K_shear + K_bend), imex: springs of K_stretch only, imex_adaptive: those marked implicit in springs.csv; b has c_j friction in it (c_j = 1 for an unknown dv, 4h/9 for dx).
 
 #include <filesystem>
 #include <functional>

@@ -53,8 +53,16 @@ void doubt_stability(Doubts& d, const Cloth& cloth, const ClothEstimate& e) {
   if (d.scene.time.integrator != IntegratorKind::imex || h < e.explicit_step()) return;
   d.add(
       "cloth '{}': IMEX takes shear and bend springs explicitly, which is unstable on slack cloth from time.step = {:.3g} s on "
-      "(h² k_shear / m = {:.3g}; here {} s): take a smaller step, a lower k_shear and k_bend, or time.integrator = \"semi_implicit_euler\"",
+      "(h² k_shear / m = {:.3g}; here {} s): take a smaller step, a lower k_shear and k_bend, or time.integrator = \"imex_adaptive\"",
       cloth.name, e.explicit_step(), h * h * cloth.material.k_shear / e.node_mass, h);
+}
+
+void doubt_bdf2(Doubts& d, const Cloth& cloth) {
+  if (d.scene.time.integrator != IntegratorKind::bdf2 || cloth.material.compression != Compression::none) return;
+  d.add(
+      "cloth '{}': BDF2 extrapolates from two steps, and springs that go slack or taut between them can make it gain energy: take "
+      "compression = \"linear\", or time.integrator = \"semi_implicit_euler\"",
+      cloth.name);
 }
 
 void doubt_core(Doubts& d, const Cloth& cloth, const ClothEstimate& e) {
@@ -140,11 +148,12 @@ std::vector<std::string> doubtful(const Scene& scene) {
   doubt_wind(d);
   for (const Solid& solid : scene.solids) doubt_speed(d, solid);
   for (const Cloth& cloth : scene.cloths) {
-    const TriangleMesh shape = start_shape(cloth);
+    const TriangleMesh shape = start_shape(cloth, d.scene.folder);
     const ClothEstimate e = estimate(cloth, shape);
     doubt_fall(d, cloth);
     doubt_mass(d, cloth, e);
     doubt_stability(d, cloth, e);
+    doubt_bdf2(d, cloth);
     doubt_core(d, cloth, e);
     doubt_stretch(d, cloth, e);
     doubt_jitter(d, cloth, e);

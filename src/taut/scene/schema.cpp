@@ -13,7 +13,7 @@ namespace taut {
 
 namespace {
 
-constexpr std::array integrator_names{"semi_implicit_euler", "imex", "bdf2", "newton"};
+constexpr std::array integrator_names{"semi_implicit_euler", "imex", "imex_adaptive", "bdf2", "newton"};
 constexpr std::array core_names{"stretch", "auto"};
 constexpr std::array reordering_names{"vectors", "matrix"};
 
@@ -23,8 +23,8 @@ void describe_time(SchemaVisitor& v, TimeOptions& time) {
   v.integer("steps_per_frame", time.steps_per_frame, {.doc = "time steps from picture to picture", .min = 1, .max = 1e6});
   v.choice("integrator", time.integrator, integrator_names,
            {.doc = "`imex` treats stretch springs implicitly and all else explicitly: cheaper, but bounded in step size by shear and "
-                   "bending; `newton` is implicit "
-                   "Euler with the forces at the end of the step, iterated until they hold"});
+                   "bending; `imex_adaptive` treats explicitly only those shear and bending springs that are weak enough for the step; "
+                   "`newton` is implicit Euler with the forces at the end of the step, iterated until they hold"});
   v.number("newton_tolerance", time.newton.tolerance,
            {.doc = "`newton` stops when what is left of the momentum equation is below this share of what drives the step",
             .min = 1e-12,

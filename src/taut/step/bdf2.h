@@ -8,7 +8,7 @@ namespace taut {
 
 class Bdf2 : public Integrator {
  public:
-  bool is_implicit(ForceClass) const override { return true; }
+  bool is_implicit(const ForceModel&) const override { return true; }
   std::string unknown(const State& state) const override { return state.has_previous ? "dx" : "dv"; }
   void assemble(Assembler& assembler, const ExternalForces& external, const State& state, double h, BlockCsr& a, std::span<Vec3> b) const override;
   // z = (I-S) d: a prescribed velocity v* of the formula's (2h v* + δ)/3 is that of a displacement d, v* = (3d - δ)/(2h).

@@ -9,7 +9,7 @@ namespace taut {
 
 class SemiImplicitEuler : public Integrator {
  public:
-  bool is_implicit(ForceClass) const override { return true; }
+  bool is_implicit(const ForceModel&) const override { return true; }
   std::string unknown(const State&) const override { return "dv"; }
   void assemble(Assembler& assembler, const ExternalForces& external, const State& state, double h, BlockCsr& a,
                 std::span<Vec3> b) const override;
@@ -23,7 +23,12 @@ class SemiImplicitEuler : public Integrator {
 
 class Imex : public SemiImplicitEuler {
  public:
-  bool is_implicit(ForceClass force_class) const override { return force_class == ForceClass::stretch; }
+  bool is_implicit(const ForceModel& model) const override { return model.force_class() == ForceClass::stretch; }
+};
+
+class AdaptiveImex : public SemiImplicitEuler {
+ public:
+  bool is_implicit(const ForceModel& model) const override { return !model.stable_explicitly(); }
 };
 
 class ImplicitEuler : public SemiImplicitEuler {

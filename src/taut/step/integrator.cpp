@@ -11,6 +11,8 @@ const char* name_of(IntegratorKind kind) {
       return "semi_implicit_euler";
     case IntegratorKind::imex:
       return "imex";
+    case IntegratorKind::imex_adaptive:
+      return "imex_adaptive";
     case IntegratorKind::bdf2:
       return "bdf2";
     case IntegratorKind::newton:
@@ -30,6 +32,8 @@ std::unique_ptr<Integrator> make_integrator(IntegratorKind kind) {
       return std::make_unique<SemiImplicitEuler>();
     case IntegratorKind::imex:
       return std::make_unique<Imex>();
+    case IntegratorKind::imex_adaptive:
+      return std::make_unique<AdaptiveImex>();
     case IntegratorKind::bdf2:
       return std::make_unique<Bdf2>();
     case IntegratorKind::newton:

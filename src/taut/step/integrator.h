@@ -1,12 +1,14 @@
 #pragma once
 // Time integration: what linear system a step solves, and what its solution means (MATH.md section 1, paper Eq. 1, 2).
 //
-//   semi_implicit_euler   (M + hD + h²K) dv = h (f - h K v)                                     v += dv, x += h v        (Baraff & Witkin
-//   1998) imex                  the same with K and spring D of the stretch springs only; f of all      likewise               (Ascher et
-//   al. 1997) bdf2                  (M + 2h/3 D + 4h²/9 K) dx = M [δ/3 + h/9 (8 v_n - 2 v_{n-1})] + 4h²/9 (f + D v_n) + 2h/9 D δ
-//                         δ = x_n - x_{n-1};  x += dx, v = (3 dx - δ)/(2h)                                              (Choi & Ko 2002)
-//   newton                M dv = h f(x + h (v + dv), v + dv), f at the end of the step: linearised again until it holds    (Hauth 2004;
-//   step/newton.h)
+//   semi_implicit_euler   (M + hD + h²K) dv = h (f - h K v);   v += dv, x += h v                       (Baraff & Witkin 1998)
+//   imex                  the same, with K and spring D of the stretch springs only; f of all          (Ascher et al. 1997)
+//   imex_adaptive         the same, with K and D of all springs but those that an explicit step takes  (Boxerman & Ascher 2004;
+//                         stably at this step length                                                    force/explicit_split.h)
+//   bdf2                  (M + 2h/3 D + 4h²/9 K) dx = M [δ/3 + h/9 (8 v_n - 2 v_{n-1})] + 4h²/9 (f + D v_n) + 2h/9 D δ
+//                         δ = x_n - x_{n-1};  x += dx, v = (3 dx - δ)/(2h)                             (Choi & Ko 2002)
+//   newton                M dv = h f(x + h (v + dv), v + dv), f at the end of the step: linearised     (Hauth 2004;
+//                         again until it holds                                                          step/newton.h)
 //
 // The unknown is a velocity change dv (m/s) or a displacement dx (m). External damping (drag, wind) is always implicit: it is diagonal and
 // costs nothing. BDF2's first step, and the step after a contact correction (State::has_previous is false), is one of semi-implicit Euler,
@@ -28,8 +30,8 @@ const char* name_of(IntegratorKind kind);
 class Integrator {
  public:
   virtual ~Integrator() = default;
-  // Whether a class of forces enters the matrix.
-  virtual bool is_implicit(ForceClass force_class) const = 0;
+  // Whether these forces enter the matrix.
+  virtual bool is_implicit(const ForceModel& model) const = 0;
   // "dv" or "dx" for this state.
   virtual std::string unknown(const State& state) const = 0;
   // A and b of a step of length h (s) from `state`. `external` has been evaluated for it.

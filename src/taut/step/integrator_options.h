@@ -3,7 +3,7 @@
 
 namespace taut {
 
-enum class IntegratorKind { semi_implicit_euler, imex, bdf2, newton };
+enum class IntegratorKind { semi_implicit_euler, imex, imex_adaptive, bdf2, newton };
 
 // Newton's method stops at |S r|_(M⁻¹) <= tolerance * scale (step/newton.h).
 struct NewtonOptions {

@@ -19,7 +19,7 @@ namespace {
 
 std::vector<bool> implicit_models(const std::vector<const ForceModel*>& models, const Integrator& integrator) {
   std::vector<bool> implicit;
-  for (const ForceModel* model : models) implicit.push_back(integrator.is_implicit(model->force_class()));
+  for (const ForceModel* model : models) implicit.push_back(integrator.is_implicit(*model));
   return implicit;
 }
 
