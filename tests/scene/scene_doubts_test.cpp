@@ -83,7 +83,7 @@ TEST(ClothEstimate, MatchesTheSpringsOfAnInnerNode) {
 // The paper's setting: h² (2 k_shear + 2 k_bend)/m, from which MATH's bound follows.
 TEST(ClothEstimate, RhoOfThePapersSheet) {
   const Scene scene = ball({});
-  const ClothEstimate e = estimate(scene.cloths[0], start_shape(scene.cloths[0]));
+  const ClothEstimate e = estimate(scene.cloths[0], start_shape(scene.cloths[0], scene.folder));
   const double rho = 5.55e-3 * 5.55e-3 * 0.7 / 9.5e-6;
   EXPECT_NEAR(e.rho(scene.time), rho, 1e-12 * rho);
   EXPECT_NEAR(e.core_iterations(scene.time, 1e-3), 0.5 * std::sqrt(2 * (1 + rho)) * std::log(2000.0), 1e-10);
@@ -100,7 +100,7 @@ TEST(StartShape, TurnsAndPlacesAMesh) {
   cloth.scale = 0.1;
   cloth.y_up = true;
   cloth.placement.translation = Vec3(0, 0, 5);
-  const TriangleMesh mesh = start_shape(cloth);
+  const TriangleMesh mesh = start_shape(cloth, {});
   std::filesystem::remove(path);
   ASSERT_EQ(mesh.positions.size(), 4u);
   EXPECT_LT((mesh.positions[1] - Vec3(0.1, 0, 5)).norm(), 1e-15);

@@ -30,7 +30,7 @@ struct ClothEstimate {
   double core_iterations(const TimeOptions& time, double tolerance) const;
 };
 
-// `shape` is start_shape(cloth).
+// `shape` is start_shape (cloth_shape.h).
 ClothEstimate estimate(const Cloth& cloth, const TriangleMesh& shape);
 
 }  // namespace taut
