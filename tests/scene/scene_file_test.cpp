@@ -38,7 +38,13 @@ Scene everything_changed(const fs::path& mesh) {
   Scene s;
   s.title = "quotes \" backslash \\ tab \t unicode µ";
   s.gravity = Vec3(0.1, -0.0, -1.0 / 3);
-  s.time = {.step = 1.0 / 300, .frames = 7, .steps_per_frame = 3, .integrator = IntegratorKind::bdf2};
+  s.time = {.step = 1.0 / 300,
+            .frames = 7,
+            .steps_per_frame = 3,
+            .integrator = IntegratorKind::bdf2,
+            .newton = {.tolerance = 1e-5, .max_iterations = 99},
+            .overshoot_limit = 0.7,
+            .max_halvings = 2};
   s.solver = {.name = "mpcg:diagonal", .tolerance = 1e-5, .max_iterations = 17, .reordering = "matrix", .reuse_analysis = false};
   s.contact = {.max_passes = 3, .touch_tolerance = 1e-5 / 3};
   s.wind = {.velocity = Vec3(1, 2, 3), .gust = 0.3, .gust_frequency = 0.7};
@@ -188,7 +194,8 @@ TEST(ShippedScenes, BallIsThePapers) {
   EXPECT_EQ(scene.solver.name, "core_pcg");
   EXPECT_EQ(sheet.node_mass, 9.5e-6);
   // Springs that push are ours (docs/paper.md says why); the rest is the paper's.
-  const SpringMaterial material{.k_stretch = 6000, .k_shear = 0.3, .k_bend = 0.05, .compression = Compression::linear, .bend_model = BendModel::linear};
+  const SpringMaterial material{
+      .k_stretch = 6000, .k_shear = 0.3, .k_bend = 0.05, .compression = Compression::linear, .bend_model = BendModel::linear};
   EXPECT_TRUE(sheet.material == material);
   EXPECT_EQ(sheet.drag, 1e-6);
   EXPECT_EQ(sheet.grid.u.norm(), 1);
