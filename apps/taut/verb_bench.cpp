@@ -116,6 +116,15 @@ CLI::App* add_sweep(CLI::App& parent, const char* name, const char* description,
   return verb;
 }
 
+void add_integrators(CLI::App& parent, int& exit_code) {
+  const auto [verb, arguments] =
+      add_bench(parent, "integrators", "Distance from the exact motion against time, an integrator a curve", bench_integrators, exit_code);
+  verb->add_option("--k-stretch", arguments->options.stiffnesses, "Stiffnesses, N/m (default 60, 6000)")
+      ->delimiter(',')
+      ->check(CLI::PositiveNumber);
+  verb->add_option("--nodes", arguments->options.nodes, "Nodes of the square sheet (default 1681)")->expected(1)->check(CLI::PositiveNumber);
+}
+
 }  // namespace
 
 void add_bench_verb(CLI::App& app, int& exit_code) {
@@ -129,6 +138,7 @@ void add_bench_verb(CLI::App& app, int& exit_code) {
             "Nodes of the square sheet (default 6561, with --full 25921)", bench_flatness, exit_code);
   add_sweep(*verb, "scale", "Time to equal error and memory over the number of nodes, with fitted exponents",
             "Only these sizes, square numbers (default 1681 to 103041, with --full to 1002001)", bench_scale, exit_code);
+  add_integrators(*verb, exit_code);
   add_roofline(*verb, exit_code);
 }
 

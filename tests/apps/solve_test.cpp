@@ -27,7 +27,7 @@ std::map<std::string, Json> rows_by_solver(const std::string& json) {
 }
 
 TEST(Solve, PrintsTheCoresSpectrumBesideItsBound) {
-  TemporaryFolder folder;
+  const WorkFolder folder;
   folder.file("small.toml", small_scene());
   ASSERT_EQ(taut(folder, {"dump", "small.toml", "--step", "5", "--out", "d", "--quiet"}).exit_code, 0);
   const ProgramEnd end = taut(folder, {"solve", "d", "--solver", "auto,core_fast", "--spectrum", "--json"});

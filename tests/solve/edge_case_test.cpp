@@ -194,5 +194,25 @@ TEST(UnknownSolver, SaysWhatIsNotBuiltIn) {
   EXPECT_EQ(says(summary.remark, "Eigen"), !built_in) << summary.remark;
 }
 
+// A chain that nothing holds: singular, but rounding leaves a last pivot that may be a little above zero.
+TEST(SingularMatrix, IsNotSolvedByADirectMethod) {
+  BlockCsr a(make_pattern({{1}, {0, 2}, {1}}, 1));
+  const double k[] = {0.1, 0.2};
+  for_each_entry(a, [&](Index r, Index c, double& value) {
+    value = r != c ? -k[std::min(r, c)] : r == 0 ? k[0] : r == 1 ? k[0] + k[1] : k[1];
+  });
+  const std::vector<double> b{1.0, 0.0, 0.0};
+  LinearSystem system;
+  system.matrix = &a, system.rhs = b;
+  for (const std::string& name : solver_names()) {
+    if (name.starts_with("cholmod") || name == "pardiso" || name == "eigen_ldlt" || name == "block_cholesky" || name == "auto") {
+      std::vector<double> x(3);
+      const SolveSummary summary = make_solver(solver_options(name, 1e-6))->solve(system, x);
+      EXPECT_FALSE(summary.status.ok()) << name << " leaves a residual of " << summary.relative_residual;
+      EXPECT_FALSE(summary.status.message.empty()) << name;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace taut::test

@@ -31,6 +31,8 @@ std::vector<ReportRow> bench_table2(const BenchOptions& options);
 nlohmann::ordered_json bench_flatness(const BenchOptions& options);
 // Time to equal error and memory over the number of nodes.
 nlohmann::ordered_json bench_scale(const BenchOptions& options);
+// Distance from the exact motion and time of each integrator over the step, 1,681 nodes.
+nlohmann::ordered_json bench_integrators(const BenchOptions& options);
 
 // Of flatness and scale: options.methods, or the default ones that this build knows.
 std::vector<std::string> methods_of(const BenchOptions& options);

@@ -60,18 +60,53 @@ Watched watch(const LinearSystem& system, const SolverOptions& options, std::spa
   return watched;
 }
 
-double median_of_three(const LinearSystem& system, const SolverOptions& options, std::vector<double>& x, SolveSummary& summary) {
-  constexpr double short_ms = 150.0;
-  std::vector<double> totals{summary.total_ms()};
-  for (int repeat = 0; repeat < 2 && totals[0] < short_ms; ++repeat) totals.push_back(make_solver(options)->solve(system, x).total_ms());
-  std::ranges::sort(totals);
-  return totals[totals.size() / 2];
+// Of five solves; of three or one where they take long.
+SolveSummary median_solve(ConstrainedSolver& solver, const LinearSystem& system, std::vector<double>& x) {
+  constexpr double short_ms = 100.0, long_ms = 1000.0;
+  std::vector<SolveSummary> solves;
+  const auto wanted = [&] { return solves.empty() || solves[0].total_ms() > long_ms ? 1u : solves[0].total_ms() > short_ms ? 3u : 5u; };
+  while (solves.size() < wanted()) solves.push_back(solver.solve(system, x));
+  std::ranges::sort(solves, {}, &SolveSummary::total_ms);
+  return solves[solves.size() / 2];
+}
+
+// Set-up, and of the loop the share until the error was reached.
+TimeToError time_to(int iterations, bool direct, const SolveSummary& s) {
+  if (direct) return {0, s.total_ms()};
+  return {iterations, s.total_ms() - s.solve_ms + s.solve_ms * iterations / std::max(1, s.iterations)};
+}
+
+// `auto` in a simulation: some solves to look around, then one that is watched and others that are timed.
+EqualErrorResult measure_auto(const LinearSystem& system, std::span<const double> reference) {
+  constexpr int warm_up = 8;
+  EqualErrorResult result;
+  result.solver = "auto";
+  std::vector<double> x(system.rhs.size());
+  for (std::size_t e = 0; e < wanted_errors.size(); ++e)
+    for (double tolerance = wanted_errors[e]; tolerance > 1e-15 && !result.to[e].reached(); tolerance *= 0.1) {
+      const auto solver = make_solver(options_for("auto", tolerance, 0));
+      for (int solve = 0; solve < warm_up; ++solve) solver->solve(system, x);
+      int iterations = -1;
+      solver->observer = [&](int iteration, double, std::span<const double> iterate) {
+        if (iterations < 0 && anorm_error(system, iterate, reference) <= wanted_errors[e]) iterations = iteration;
+      };
+      const SolveSummary watched = solver->solve(system, x);
+      solver->observer = {};
+      result.status = watched.status;
+      result.anorm_error = anorm_error(system, x, reference);
+      if (!watched.status.ok() || result.anorm_error > wanted_errors[e]) continue;
+      result.summary = median_solve(*solver, system, x);
+      result.to[e] = time_to(std::max(iterations, 0), iterations < 0, result.summary);
+    }
+  if (result.to.back().reached()) result.status = {};
+  return result;
 }
 
 }  // namespace
 
 EqualErrorResult measure_equal_error(const LinearSystem& system, const std::string& solver, std::span<const double> reference,
                                      double seconds) {
+  if (solver == "auto") return measure_auto(system, reference);
   EqualErrorResult result;
   result.solver = solver;
   double tolerance = wanted_errors.back();
@@ -86,17 +121,13 @@ EqualErrorResult measure_equal_error(const LinearSystem& system, const std::stri
     result.summary = make_solver(options_for(solver, tolerance, 1))->solve(system, x);
     return result;
   }
-  const SolverOptions timed = options_for(solver, tolerance, std::max(1, most));
-  result.summary = make_solver(timed)->solve(system, x);
+  // What a method does once per topology is done in a first solve, which is not timed.
+  const auto timed = make_solver(options_for(solver, tolerance, std::max(1, most)));
+  timed->solve(system, x);
+  result.summary = median_solve(*timed, system, x);
   result.anorm_error = anorm_error(system, x, reference);
-  SolveSummary& s = result.summary;
-  // A slow machine moment hits set-up and loop alike.
-  const double total = median_of_three(system, timed, x, s), scale = total / s.total_ms();
-  for (std::size_t e = 0; e < wanted_errors.size(); ++e) {
-    if (watched.iterations[e] < 0) continue;
-    const double share = watched.direct ? 1.0 : static_cast<double>(watched.iterations[e]) / std::max(1, s.iterations);
-    result.to[e] = {watched.direct ? 0 : watched.iterations[e], scale * (s.total_ms() - s.solve_ms + share * s.solve_ms)};
-  }
+  for (std::size_t e = 0; e < wanted_errors.size(); ++e)
+    if (watched.iterations[e] >= 0) result.to[e] = time_to(watched.iterations[e], watched.direct, result.summary);
   if (result.to.back().reached()) result.status = {};
   return result;
 }
@@ -107,6 +138,7 @@ static std::string name_of_error(std::size_t e) { return fmt::format("1e{}", std
 void put(nlohmann::ordered_json& row, const EqualErrorResult& result) {
   const SolveSummary& s = result.summary;
   row["solver"] = result.solver;
+  if (s.method != s.solver) row["method"] = s.method;
   row["threads"] = thread_count();
   row["iterations"] = s.iterations;
   row["setup_ms"] = s.total_ms() - s.solve_ms;

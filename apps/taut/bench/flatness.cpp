@@ -16,6 +16,7 @@
 #include "taut/base/error.h"
 #include "taut/base/timer.h"
 #include "taut/scene/scene_file.h"
+#include "taut/solve/core_bound.h"
 #include "taut/solve/core_spectrum.h"
 #include "taut/solve/reference.h"
 
@@ -116,9 +117,14 @@ class Flatness {
                {"h", cell.h},
                {"integrator", "semi_implicit_euler"},
                {"rho", rho}};
+    LinearSystem of_auto = system;
+    const std::vector<std::uint8_t> chosen = stepper.chosen_core(cell.h);
+    of_auto.core = chosen;
+    of_auto.rho = remainder_ratio(*system.matrix, chosen, cloth.external().masses());
+    facts["rho_of_auto"] = of_auto.rho;
     std::vector<EqualErrorResult> results;
     for (const std::string& method : methods_) {
-      results.push_back(measure_equal_error(system, method, reference, options_.seconds_limit));
+      results.push_back(measure_equal_error(method == "auto" ? of_auto : system, method, reference, options_.seconds_limit));
       add_row(facts, spectrum, rho, results.back());
     }
     put_ratios(results.size());
@@ -128,7 +134,7 @@ class Flatness {
   void add_row(const Json& facts, const CoreSpectrum& spectrum, double rho, const EqualErrorResult& result) {
     Json row = facts;
     put(row, result);
-    if (result.solver.starts_with("core_pcg")) {
+    if (result.solver.starts_with("core_")) {
       row["lambda_min"] = spectrum.smallest, row["lambda_max"] = spectrum.largest, row["cond"] = spectrum.largest / spectrum.smallest;
       row["cond_bound"] = 2.0 * (1.0 + rho);
       row["bound_iterations"] = bound_iterations(rho, wanted_errors.back());

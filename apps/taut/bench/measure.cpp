@@ -24,8 +24,9 @@ double median(std::vector<double> values) {
   return 0.5 * (*middle + *std::max_element(values.begin(), middle));
 }
 
-// PARDISO's CG shows its answer only, and needs the factor of an earlier step: its iterations cannot be cut at a wanted error.
-bool method_hides_iterates(const Method& method) { return method.solver == "pardiso_cgs"; }
+// These show their answer only: PARDISO's CG needs the factor of an earlier step, and auto decides by its own stop rule. So their iterations
+// cannot be cut at a wanted error.
+bool method_hides_iterates(const Method& method) { return method.solver == "pardiso_cgs" || method.solver == "auto"; }
 
 // These analyse once per topology: that is what is measured.
 bool keeps_analysis(const Method& method) {

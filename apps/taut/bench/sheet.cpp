@@ -16,8 +16,8 @@ std::vector<std::string> methods_of(const BenchOptions& options) {
   if (!options.methods.empty()) return options.methods;
   const std::vector<std::string> known = solver_names();
   std::vector<std::string> methods;
-  for (const char* name : {"cholmod", "mpcg:block_diagonal", "upcg:ic0_core", "upcg:ic0", "upcg:amg", "core_pcg", "core_pcg:block",
-                           "block_cholesky", "core_fast", "auto"})
+  for (const char* name : {"cholmod", "cholmod_reused_analysis", "pardiso", "block_cholesky", "mpcg:block_diagonal", "upcg:ic0_core",
+                           "upcg:ic0", "upcg:amg", "core_pcg", "core_fast", "auto"})
     if (std::ranges::count(known, name)) methods.emplace_back(name);
   return methods;
 }

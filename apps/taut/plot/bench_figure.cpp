@@ -124,6 +124,31 @@ Figure scale_figure(const Json& rows, const std::string& machine) {
   return figure;
 }
 
+Figure integrators_figure(const Json& rows, const std::string& machine) {
+  Figure figure;
+  figure.title = fmt::format("Integrators: distance from the exact motion against time, {} nodes", rows.front().value("nodes", 0));
+  figure.note = "A point a step length, the longest on the left. What blew up is not there. " + machine;
+  figure.columns = 2, figure.shared_legend = true, figure.panel_width = 430, figure.panel_height = 330;
+  std::vector<std::pair<std::string, double>> scenes;
+  for (const Json& row : rows)
+    if (const std::pair scene(text(row, "scene"), number(row, "k_stretch")); !std::ranges::count(scenes, scene)) scenes.push_back(scene);
+  for (const auto& [scene, k] : scenes) {
+    Panel panel;
+    panel.title = fmt::format("{}, k_stretch {:g} N/m", scene, k);
+    panel.x = {"time of the run, s", AxisScale::logarithmic}, panel.y = {"rms distance, mm", AxisScale::logarithmic};
+    for (const Json& row : rows) {
+      if (text(row, "scene") != scene || number(row, "k_stretch") != k || !row.contains("rms_m")) continue;
+      const std::string name = text(row, "integrator");
+      auto curve = std::ranges::find(panel.curves, name, &Curve::name);
+      if (curve == panel.curves.end()) curve = panel.curves.insert(curve, Curve{name, {}, CurveStyle::line_and_points});
+      curve->points.push_back({number(row, "seconds"), 1e3 * number(row, "rms_m")});
+    }
+    for (Curve& curve : panel.curves) std::ranges::sort(curve.points, {}, &PlotPoint::x);
+    figure.panels.push_back(std::move(panel));
+  }
+  return figure;
+}
+
 Figure solve_report_figure(const Json& rows, const std::string& machine) {
   const bool has_error = std::ranges::any_of(rows, [](const Json& row) { return row.contains("anorm_error"); });
   Figure figure;
@@ -162,12 +187,14 @@ Figure bench_figure(const Json& report) {
   const Json& rows = report.at("rows");
   if (bench == "flatness") return FlatnessFigure(rows).figure(machine);
   if (bench == "scale") return scale_figure(rows, machine);
+  if (bench == "integrators") return integrators_figure(rows, machine);
   if (bench == "solve") return solve_report_figure(rows, machine);
   if (bench == "table1" || bench == "table2") return table_figure(rows, machine);
   throw InputError(
       bench.empty()
           ? "the report does not say of which bench it is (\"bench\"), so it cannot be drawn"
-          : fmt::format("there is no figure for the bench '{}'; there are some for table1, table2, flatness, scale and solve", bench));
+          : fmt::format("there is no figure for the bench '{}'; there are some for table1, table2, flatness, scale, integrators and solve",
+                        bench));
 }
 
 }  // namespace taut::app

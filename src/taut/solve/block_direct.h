@@ -13,6 +13,7 @@ class BlockDirect : public ConstrainedSolver {
   explicit BlockDirect(SolverOptions options) : ConstrainedSolver(std::move(options)) {}
 
  protected:
+  bool is_direct() const override { return true; }
   void run(const LinearSystem& system, std::span<double> x, SolveSummary& summary) override;
 
  private:

@@ -16,6 +16,7 @@ class Direct : public ConstrainedSolver {
   Direct(SolverOptions options, const std::string& backend, AnalysisUse analysis = AnalysisUse::by_option);
 
  protected:
+  bool is_direct() const override { return true; }
   void run(const LinearSystem& system, std::span<double> x, SolveSummary& summary) override;
 
  private:

@@ -62,6 +62,8 @@ class ConstrainedSolver {
     other.run(system, x, summary);
   }
   int iteration_limit(Index unknowns) const;
+  // A direct method stops whatever the residual is: on a singular matrix, whose last pivot is rounding, it would succeed with any x.
+  virtual bool is_direct() const { return false; }
 
   SolverOptions options_;
 };
