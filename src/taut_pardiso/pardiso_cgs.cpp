@@ -43,6 +43,11 @@ void PardisoCgs::run(const LinearSystem& system, std::span<double> x, SolveSumma
 
 void PardisoCgs::solve_reduced(SolveSummary& summary) {
   Timer timer;
+  // Its CG divides by the norm of b, and may then never end.
+  if (norm(reduced_.rhs()) == 0.0) {
+    std::ranges::fill(reduced_.solution(), 0.0);
+    return;
+  }
   const bool had_factor = has_factor_;
   CgReport cg;
   // NaN is for the factorisation, which refuses it.

@@ -38,7 +38,7 @@ TEST(Run, WritesTheFilesAndColumnsThatAreDocumented) {
   EXPECT_EQ(last[2], "6");
   EXPECT_EQ(last[3], "72");
   EXPECT_EQ(std::stoi(last[4]) + std::stoi(last[5]), 3 * 72);
-  EXPECT_EQ(last[7], "core_pcg");
+  EXPECT_EQ(last[7], "core_fast");  // what `auto`, the default, chooses
 
   const auto summary = nlohmann::json::parse(read_text(out / "summary.json"));
   EXPECT_EQ(summary.at("status"), "finished");

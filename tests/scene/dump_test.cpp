@@ -24,6 +24,7 @@ struct DumpCase {
   Vec3 wind = Vec3::Zero();
   std::string unknown = "dv";
   bool touches = false;
+  std::string core = "stretch";
 };
 void PrintTo(const DumpCase& c, std::ostream* out) { *out << c.name; }
 
@@ -49,6 +50,7 @@ std::vector<DumpCase> dump_cases() {
       {"euler_linear_compression", sheet("", stiff + "compression = \"linear\"\n", ""), 12},
       {"euler_choi_ko", sheet("", choi_ko, ""), 15},
       {"euler_wind", sheet("", stiff + "wind_pressure = 0.5\ndrag = 1e-4\n", "[wind]\nvelocity = [3, 1, 0.5]\n"), 6, Vec3(3, 1, 0.5)},
+      {"core_auto", sheet("", damped, ""), 9, Vec3::Zero(), "dv", false, "auto"},
       {"euler_contact", sheet("", damped, ball), 25, Vec3::Zero(), "dv", true},
       {"imex", sheet("integrator = \"imex\"", damped, ""), 9},
       {"imex_contact", sheet("integrator = \"imex\"", damped + "compression = \"linear\"\n", ball), 25, Vec3::Zero(), "dv", true},
@@ -76,7 +78,7 @@ class Dump : public testing::TestWithParam<DumpCase> {
     GridShape shape;
     shape.nu = 6, shape.nv = 5, shape.u = Vec3(0.5, 0, 0), shape.v = Vec3(0, 0.4, 0);
     write_obj(folder / "cloth.obj", make_grid(shape));
-    Simulation simulation(read_scene_text(c.scene, folder / "scene.toml", std::vector<std::string>{"solver.tolerance=1e-9"}));
+    Simulation simulation(read_scene_text(c.scene, folder / "scene.toml", std::vector<std::string>{"solver.tolerance=1e-9", "solver.core=" + c.core}));
     const DumpOutcome outcome = dump_step(simulation, c.step, folder / c.name);
     EXPECT_TRUE(outcome.status.ok()) << outcome.status.message;
     files = std::make_unique<DumpFiles>(folder / c.name);
@@ -149,9 +151,21 @@ TEST_P(Dump, StiffnessOfEachClassFollowsFromTheSprings) {
 }
 
 TEST_P(Dump, CoreIsMadeOfBlocksOfTheMatrix) {
+  EXPECT_EQ(d.meta.at("core"), GetParam().core);
   std::set<std::pair<int, int>> kept;
+  if (GetParam().core == "auto") {
+    // Which springs are strong is tests/solve/core_choice_test.cpp's; here: whole blocks, both triangles, and some of each kind.
+    int left_out = 0;
+    for (const test::SpringRow& s : d.springs) {
+      const bool is_kept = !d.a_core.block<3, 3>(3 * s.i, 3 * s.j).isZero(0.0);
+      if (is_kept) kept.insert({s.i, s.j}), kept.insert({s.j, s.i});
+      left_out += !is_kept;
+    }
+    EXPECT_FALSE(kept.empty());
+    EXPECT_GT(left_out, 0);
+  }
   for (const test::SpringRow& s : d.springs)
-    if (s.force_class == "stretch") kept.insert({s.i, s.j}), kept.insert({s.j, s.i});
+    if (GetParam().core == "stretch" && s.force_class == "stretch") kept.insert({s.i, s.j}), kept.insert({s.j, s.i});
   for (int i = 0; i < d.m.size() / 3; ++i)
     for (int j = 0; j < d.m.size() / 3; ++j) {
       const Mat3 expected = i == j || kept.contains({i, j}) ? Mat3(d.a.block<3, 3>(3 * i, 3 * j)) : Mat3(Mat3::Zero());

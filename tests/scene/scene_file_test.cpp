@@ -151,7 +151,7 @@ TEST(SceneFile, AMeshStartsFromTheFolderOfTheScene) {
 TEST(SceneFile, LeftOutMeansTheDefaultOfTheStruct) {
   const Scene scene = read_scene_text("[[cloth]]\ngrid = { nodes = [2, 2], u = [1, 0, 0], v = [0, 1, 0] }\ndensity = 1\n", "/a.toml");
   EXPECT_TRUE(scene.time == TimeOptions{});
-  EXPECT_TRUE(scene.solver == SolverOptions{});
+  EXPECT_TRUE(scene.solver == SolverOptions{.name = "auto"});
   EXPECT_TRUE(scene.contact == ContactOptions{});
   EXPECT_TRUE(scene.cloths[0].material == SpringMaterial{});
   EXPECT_EQ(scene.gravity, Vec3(0, 0, -9.81));

@@ -113,20 +113,18 @@ TEST(Simulation, GoesOnFromACheckpointToTheSameBits) {
         Interrupted{"time.integrator=newton", "solver.name=auto", 20}, Interrupted{"time.integrator=bdf2", "solver.name=auto", 23}}) {
     const Scene scene = scene_of(crowded, {integrator, solver, "cloth.grid.nodes=[21, 20]"});
     SCOPED_TRACE(fmt::format("{}, {}, step {}", integrator, solver, at));
-    std::set<std::string> methods;
     Simulation whole(scene), resumed(scene);
     StepRecord record;
     std::string bytes;
     for (int k = 0; k < 40; ++k) {
       if (k == at) {
-        EXPECT_GT(whole.contact().contacts(), k < 10 ? 0 : 5);
+        EXPECT_GE(whole.contact().contacts(), k < 10 ? 0 : 5);
         std::ostringstream out;
         write(out, Checkpoint{scene_to_toml(scene), whole.steps_done(), 3, whole.state(), whole.contact().state(),
                               whole.stepper().solver().memory()});
         bytes = out.str();
       }
       ASSERT_TRUE(whole.step(record).ok());
-      methods.insert(record.solver);
     }
     Checkpoint checkpoint = parse_checkpoint(bytes, "state.bin");
     resumed.restore(checkpoint.state, checkpoint.contacts, checkpoint.steps, checkpoint.solver_memory);
@@ -136,7 +134,7 @@ TEST(Simulation, GoesOnFromACheckpointToTheSameBits) {
     EXPECT_TRUE(resumed.contact().state() == whole.contact().state());
     EXPECT_EQ(resumed.stepper().solver().memory(), whole.stepper().solver().memory());
     if (scene.solver.name == "auto") {
-      EXPECT_GT(methods.size(), 1u) << "always the same method: there was nothing to remember";
+      EXPECT_NE(checkpoint.solver_memory, make_solver(scene.solver)->memory()) << "there was nothing to remember";
     }
   }
 }

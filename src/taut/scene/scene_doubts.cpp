@@ -69,12 +69,12 @@ void doubt_core(Doubts& d, const Cloth& cloth, const ClothEstimate& e) {
   constexpr double many = 30;
   // IMEX's matrix has the springs of the core only.
   const std::string& solver = d.scene.solver.name;
-  if (!(solver.starts_with("core_pcg") || solver == "core_fast") || d.scene.time.integrator == IntegratorKind::imex) return;
+  if (!solver.starts_with("core_") || d.scene.solver.chooses_core() || d.scene.time.integrator == IntegratorKind::imex) return;
   const double iterations = e.core_iterations(d.scene.time, d.scene.solver.tolerance);
   if (iterations <= many) return;
   d.add(
       "cloth '{}': shear and bend springs are strong for its mass and the time step (ρ = {:.3g}), so {} may take up to {:.0f} "
-      "iterations a step: take a smaller time.step, lower k_shear and k_bend, or solver.name = \"cholmod\"",
+      "iterations a step: take a smaller time.step, lower k_shear and k_bend, or solver.core = \"auto\"",
       cloth.name, e.rho(d.scene.time), solver, iterations);
 }
 

@@ -8,12 +8,13 @@
 #include "taut/base/error.h"
 #include "taut/linalg/lanczos.h"
 #include "taut/linalg/vector_ops.h"
+#include "taut/solve/core_bound.h"
 
 namespace taut {
 
 namespace {
 
-constexpr const char* names[] = {auto_core_method, "upcg:block_diagonal", "upcg:ic0_core", "upcg:ic0", "block_cholesky"};
+constexpr const char* names[] = {auto_core_method, "upcg:projected_block_diagonal", "upcg:ic0_core", "upcg:ic0", "block_cholesky"};
 
 constexpr double shortest_patience = 16, longest_patience = 256;  // solves
 constexpr double bar_after_failure = 64;                          // solves
@@ -21,6 +22,7 @@ constexpr int least_trial = 3;                                    // iterations 
 constexpr double give_up_at = 2.0;                                // times the work of corePCG
 constexpr double core_condition = 18.0;                           // 2 (1 + ρ) where ρ is not known: that of the chosen core
 constexpr double loosest = 3.0;                                   // times the error that corePCG may leave
+constexpr double worst_condition = 1e12;                          // of what these methods can solve
 constexpr double memory_version = 2;
 
 // Times are sums, the rest is the last attempt's.
@@ -140,6 +142,9 @@ double AutoSolver::tolerance_for(Method method, const LinearSystem& system) cons
 }
 
 AutoSolver::Attempt AutoSolver::attempt(Method method, int most_iterations, Solve& solve) {
+  // Few iterations would not show how bad it is.
+  if (is_incomplete(method) && records_[method].condition == 0.0)
+    records_[method].condition = std::min(worst_condition, block_diagonal_condition(*solve.original.matrix));
   ConstrainedSolver& with = solver(method);
   const double tolerance = tolerance_for(method, solve.original);
   if (options_.max_iterations > 0) most_iterations = std::min(most_iterations, options_.max_iterations);

@@ -1,13 +1,11 @@
 #pragma once
 // The solver `auto`: in each solve the method that should cost least, of
 //
-//   core_fast                   on whatever core the system has, with a bound on its iterations; the measure of the others
-//
-//   upcg:block_diagonal         no set-up; for soft or quiet cloth
-//
-//   upcg:ic0_core, upcg:ic0     little set-up, but iterations grow with the stiffness, and they may break down
-//
-//   block_cholesky              direct; where nearly all springs are in the core
+//   core_fast                        on whatever core the system has, with a bound on its iterations; the measure of the others
+//   upcg:projected_block_diagonal    no set-up; for soft or quiet cloth. Projected: the bound on its condition holds for the blocks of Ã, not
+//                                    for those of A restricted to the free directions
+//   upcg:ic0_core, upcg:ic0          little set-up, but iterations grow with the stiffness, and they may break down
+//   block_cholesky                   direct; where nearly all springs are in the core
 //
 // Work is counted (solve/solver_work.h) from the sizes of matrix and factor and from the iterations of a method's last solve; no clock.
 //
@@ -23,6 +21,8 @@
 // Same accuracy: the stop test's norm depends on the preconditioner, |e|_A/|x|_A <= sqrt(cond(M⁻¹A)) tolerance. A method whose condition
 // (by Lanczos, from the coefficients of its own last solve) is above corePCG's bound gets a tolerance as much smaller; what stopped too
 // early goes on with another method.
+//
+// Before a method's first solve its condition is taken for the bound of the block diagonal's (solve/core_bound.h).
 //
 // Deterministic. What later choices depend on is in memory(), a few numbers, so that a resumed simulation takes the same way.
 
@@ -56,7 +56,7 @@ class AutoSolver : public ConstrainedSolver {
   // What is remembered of a method. All numbers are doubles, so that a memory is a list of them.
   struct Record {
     double iterations = -1.0;  // of its last solve, or more than where it was given up; negative: never tried
-    double condition = 100.0;  // of M⁻¹ A, as far as its solves have shown
+    double condition = 0.0;    // of M⁻¹ A, as far as its solves have shown; 0: none yet
     double next_trial = 0.0;   // number of the solve from which on it may be tried
     double patience = 16.0;    // solves between trials
     double factor_nonzeros = 0.0, factor_flops = 0.0;

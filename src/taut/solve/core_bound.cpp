@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 #include "taut/base/parallel.h"
 
@@ -41,6 +42,25 @@ double remainder_ratio(const BlockCsr& a, std::span<const std::uint8_t> core, st
     for (Index i = begin; i < end; ++i) ratio[i] = largest_eigenvalue(-deleted_blocks(a, core, i)) / masses[i];
   });
   return ratio.empty() ? 0.0 : *std::ranges::max_element(ratio);
+}
+
+double block_diagonal_condition(const BlockCsr& a) {
+  const BlockPattern& p = *a.pattern;
+  assert(p.uniform_dim > 0);
+  std::vector<double> ratio(static_cast<std::size_t>(p.rows()), 0.0);
+  parallel_for(p.rows(), 256, [&](Index begin, Index end) {
+    for (Index i = begin; i < end; ++i) {
+      double sum = 0.0, diagonal = 0.0;
+      for (Index k = p.row_start[i]; k < p.row_start[i + 1]; ++k)
+        for (Index r = 0; r < p.dim(i); ++r) {
+          const double entry = a.block(i, k)[r * p.width(i) + r];
+          sum += entry;
+          if (k == p.diagonal[i]) diagonal += entry;
+        }
+      ratio[static_cast<std::size_t>(i)] = sum > 1e-14 * diagonal ? diagonal / sum : std::numeric_limits<double>::infinity();
+    }
+  });
+  return 2.0 * (ratio.empty() ? 1.0 : *std::ranges::max_element(ratio));
 }
 
 int core_iteration_bound(double rho, double start_value, double tolerance) {

@@ -18,6 +18,10 @@ namespace taut {
 // node.
 double remainder_ratio(const BlockCsr& a, std::span<const std::uint8_t> core, std::span<const double> masses);
 
+// The same for an empty core, whose P is A's block diagonal: 2 max_i tr(A_ii)/tr(Σ_j A_ij) >= cond(P⁻¹A), since a row of a cloth matrix
+// sums to mass and external damping, which are the same in all directions. Infinity where a row sums to nothing: not a cloth.
+double block_diagonal_condition(const BlockCsr& a);
+
 int core_iteration_bound(double rho, double start_value, double tolerance);
 
 }  // namespace taut

@@ -9,14 +9,15 @@
 
 namespace taut {
 
-// Taut's kernels relative to each other, seconds a byte and an operation; measured on two cores of an x86-64 server, 6,561 nodes.
+// Taut's kernels relative to each other, seconds a byte and an operation; measured on two cores of an x86-64 server (AVX2), 6,561 and
+// 25,921 nodes (`taut bench roofline --threads 2`).
 struct WorkRates {
   double stream = 1.0 / 20e9;             // products and vectors: bytes read and written
   double incomplete = 1.0 / 8e9;          // IC(0)'s solves: bytes of the matrix it is made from; each row waits for the last
   double incomplete_setup = 1.0 / 0.7e9;  // IC(0)'s factorisation: the same bytes
-  double factor = 1.0 / 20e9;             // Cholesky factorisation, operations
-  double factor_solve = 1.0 / 8e9;        // its triangular solves: bytes of the factor
-  double core_speed = 2.0;                // of the core's factor, in single precision, against the direct method's
+  double factor = 1.0 / 28e9;             // Cholesky factorisation, operations
+  double factor_solve = 1.0 / 16e9;       // its triangular solves: bytes of the factor
+  double core_speed = 1.8;                // of the core's factor, in single precision, against the direct method's
 };
 inline constexpr WorkRates work_rates{};
 
