@@ -79,7 +79,7 @@ void expect_same(const State& a, const State& b, const std::string& what) {
 TEST(Simulation, DeterministicForAnyNumberOfThreads) {
   const int usual = thread_count();
   for (const char* variant : {"time.integrator=\"semi_implicit_euler\"", "time.integrator=\"bdf2\""}) {
-    const Scene scene = scene_of(crowded, {variant, "solver.name=\"core_pcg:eigen\""});
+    const Scene scene = scene_of(crowded, {variant, "solver.name=\"core_pcg:block\""});
     Outcome first;
     for (const int threads : {1, 2, 4}) {
       set_thread_count(threads);

@@ -29,7 +29,7 @@ class EdgeCase : public testing::TestWithParam<std::string> {
   Random random_{1};
 };
 
-INSTANTIATE_TEST_SUITE_P(All, EdgeCase, testing::ValuesIn(solver_names()), [](const auto& solver) { return test_name(solver.param); });
+INSTANTIATE_TEST_SUITE_P(All, EdgeCase, testing::ValuesIn(solvers_to_test()), [](const auto& solver) { return test_name(solver.param); });
 
 TEST_P(EdgeCase, AllNodesFixed) {
   ConstrainedCase c = random_case(random_, {.nodes = 10, .only = 0});

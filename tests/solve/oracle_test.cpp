@@ -12,7 +12,7 @@ class Solver : public testing::TestWithParam<std::string> {
   static SolverOptions options() { return solver_options(GetParam(), 1e-10); }
 };
 
-INSTANTIATE_TEST_SUITE_P(All, Solver, testing::ValuesIn(solver_names()), [](const auto& solver) { return test_name(solver.param); });
+INSTANTIATE_TEST_SUITE_P(All, Solver, testing::ValuesIn(solvers_to_test()), [](const auto& solver) { return test_name(solver.param); });
 
 void expect_solved(const ConstrainedCase& c, ConstrainedSolver& solver) {
   const Eigen::VectorXd expected = c.solution();
