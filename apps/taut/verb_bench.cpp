@@ -122,7 +122,9 @@ void add_integrators(CLI::App& parent, int& exit_code) {
   verb->add_option("--k-stretch", arguments->options.stiffnesses, "Stiffnesses, N/m (default 60, 6000)")
       ->delimiter(',')
       ->check(CLI::PositiveNumber);
-  verb->add_option("--nodes", arguments->options.nodes, "Nodes of the square sheet (default 1681)")->expected(1)->check(CLI::PositiveNumber);
+  verb->add_option("--nodes", arguments->options.nodes, "Nodes of the square sheet (default 1681)")
+      ->expected(1)
+      ->check(CLI::PositiveNumber);
 }
 
 }  // namespace
@@ -139,6 +141,10 @@ void add_bench_verb(CLI::App& app, int& exit_code) {
   add_sweep(*verb, "scale", "Time to equal error and memory over the number of nodes, with fitted exponents",
             "Only these sizes, square numbers (default 1681 to 103041, with --full to 1002001)", bench_scale, exit_code);
   add_integrators(*verb, exit_code);
+  const auto frames =
+      add_bench(*verb, "frames", "Paper, Section 3, 'improper U': iterations with three choices of U", bench_frames, exit_code);
+  frames.verb->add_option("--tolerance", frames.arguments->options.tolerance, "Of the stop rule (default 1e-3)")
+      ->check(CLI::Range(1e-14, 1.0));
   add_roofline(*verb, exit_code);
 }
 

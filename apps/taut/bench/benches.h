@@ -33,6 +33,8 @@ nlohmann::ordered_json bench_flatness(const BenchOptions& options);
 nlohmann::ordered_json bench_scale(const BenchOptions& options);
 // Distance from the exact motion and time of each integrator over the step, 1,681 nodes.
 nlohmann::ordered_json bench_integrators(const BenchOptions& options);
+// The paper's "improper U": iterations of one system in three kinds of frames, 6,561 nodes.
+nlohmann::ordered_json bench_frames(const BenchOptions& options);
 
 // Of flatness and scale: options.methods, or the default ones that this build knows.
 std::vector<std::string> methods_of(const BenchOptions& options);
