@@ -18,12 +18,10 @@ struct Experiment {
 
 bool swings(const Simulation& simulation, const StepRecord&) { return simulation.state().time >= 0.3; }
 
-bool most_nodes_are_held(const Simulation& simulation, const StepRecord&) {
-  const auto ndofs = simulation.constraints().ndofs();
-  return 2 * std::ranges::count(ndofs, std::int8_t{0}) > static_cast<std::ptrdiff_t>(ndofs.size());
-}
+// What has come to lie on the sphere lies there by then, held by friction or sliding.
+bool lies(const Simulation& simulation, const StepRecord&) { return simulation.state().time >= 0.9; }
 
-const Experiment experiments[] = {{"pinned", "pinned.toml", swings}, {"draping", "drape.toml", most_nodes_are_held}};
+const Experiment experiments[] = {{"pinned", "pinned.toml", swings}, {"draping", "drape.toml", lies}};
 
 std::vector<std::string> settings_of(int k_stretch) {
   return {"cloth.grid.nodes=[81,81]", "time.step=3.67e-3", fmt::format("cloth.k_stretch={}", k_stretch), "time.frames=100000",

@@ -11,6 +11,13 @@
 #define TAUT_MULTIVERSION
 #endif
 
+// For what such a function calls: compiled with it, for its instruction set.
+#if defined(__GNUC__)
+#define TAUT_ALWAYS_INLINE inline __attribute__((always_inline))
+#else
+#define TAUT_ALWAYS_INLINE inline
+#endif
+
 namespace taut {
 
 // "x86-64-v4", "x86-64-v3" or "default": what TAUT_MULTIVERSION functions resolve to on this machine.

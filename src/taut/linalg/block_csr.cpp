@@ -13,7 +13,7 @@ namespace {
 // Rows per task: about 0.4 MB of a cloth matrix, enough to hide the cost of handing a task over.
 constexpr Index rows_per_task = 256;
 
-// A row's gathered x: 64 neighbours of 3 unknowns; longer rows are done in pieces of this many entries.
+// A row's gathered x: 64 neighbours of 3 unknowns; longer rows are done in pieces of at most this many entries.
 constexpr Index gather_capacity = 192;
 
 void fill_layout(BlockPattern& p) {
@@ -42,58 +42,98 @@ struct RowView {
   const Index* row_start;
   const Index* column;
   const Index* column_dof;
+  const Index* block_offset;
   const Index* dof_start;
   const Offset* value_start;
   const double* values;
+  Index dofs;
 };
 
-// y_i = A_i x for rows of blocks of up to 3x3; returns sum of x_i·y_i over the rows. Rows whose neighbours all have 3 unknowns gather without
-// asking each for its dim: nearly all rows of a cloth that is held here and there.
+// Four doubles at any address.
+using Four = double __attribute__((vector_size(32), aligned(8), may_alias));
+TAUT_ALWAYS_INLINE const Four& four(const double* p) { return *reinterpret_cast<const Four*>(p); }
+TAUT_ALWAYS_INLINE double sum_of(const Four& v) { return (v[0] + v[2]) + (v[1] + v[3]); }
+
+// The x that a row meets, its neighbours' unknowns packed in `to`. Four are copied of each, whatever its dim: what is too much is written
+// over by the next. Wants four unknowns behind each column_dof of the row.
+TAUT_ALWAYS_INLINE void gather(const RowView& a, Index first, Index last, const double* x, double* to) {
+  for (Index k = first; k < last; ++k) *reinterpret_cast<Four*>(to + a.block_offset[k]) = four(x + a.column_dof[k]);
+}
+
+// s += the first `dim` rows of a panel times g. Two sums a row, so that one need not wait for the other.
+template <int dim>
+TAUT_ALWAYS_INLINE void row_product(const double* row, Index width, const double* g, Index length, double* s) {
+  Four even[dim] = {}, odd[dim] = {};
+  Index c = 0;
+  for (; c + 8 <= length; c += 8) {
+    const Four g0 = four(g + c), g1 = four(g + c + 4);
+    for (int r = 0; r < dim; ++r) {
+      even[r] += four(row + r * width + c) * g0;
+      odd[r] += four(row + r * width + c + 4) * g1;
+    }
+  }
+  if (c + 4 <= length) {
+    for (int r = 0; r < dim; ++r) even[r] += four(row + r * width + c) * four(g + c);
+    c += 4;
+  }
+  double rest[dim] = {};
+  for (; c < length; ++c)
+    for (int r = 0; r < dim; ++r) rest[r] += row[r * width + c] * g[c];
+  for (int r = 0; r < dim; ++r) s[r] += sum_of(even[r] + odd[r]) + rest[r];
+}
+
+// Rows that are too long to be gathered at once, or too near the end of x.
+template <int dim>
+TAUT_ALWAYS_INLINE void row_product_in_pieces(const RowView& a, Index first, Index last, const double* row, Index width, const double* x,
+                                              double* gathered, double* s) {
+  Index k = first;
+  for (Index piece = 0; piece < width;) {
+    Index length = 0;
+    for (; k < last; ++k) {
+      const Index from = a.column_dof[k], d = a.dof_start[a.column[k] + 1] - from;
+      if (length + d > gather_capacity) break;
+      for (Index c = 0; c < d; ++c) gathered[length + c] = x[from + c];
+      length += d;
+    }
+    row_product<dim>(row + piece, width, gathered, length, s);
+    piece += length;
+  }
+}
+
+// y_i = A_i x for a row of `dim` unknowns; returns x_i·y_i.
+template <int dim>
+TAUT_ALWAYS_INLINE double one_row(const RowView& a, Index i, const double* x, double* y, double* gathered) {
+  const double* row = a.values + a.value_start[i];
+  const Index width = static_cast<Index>(a.value_start[i + 1] - a.value_start[i]) / dim;
+  const Index first = a.row_start[i], last = a.row_start[i + 1];
+  double s[3] = {};
+  if (width <= gather_capacity && a.column_dof[last - 1] + 4 <= a.dofs) {
+    gather(a, first, last, x, gathered);
+    row_product<dim>(row, width, gathered, width, s);
+  } else {
+    row_product_in_pieces<dim>(a, first, last, row, width, x, gathered, s);
+  }
+  double xax = 0.0;
+  const Index dof = a.dof_start[i];
+  for (int r = 0; r < dim; ++r) {
+    y[dof + r] = s[r];
+    xax += x[dof + r] * s[r];
+  }
+  return xax;
+}
+
+// Rows of blocks of up to 3x3; returns the sum of x_i·y_i over the rows.
 TAUT_MULTIVERSION double rows_product_blocks(const RowView& a, Index begin, Index end, const double* x, double* y) {
-  alignas(64) double gathered[gather_capacity];
+  alignas(64) double gathered[gather_capacity + 4];
   double xax = 0.0;
   for (Index i = begin; i < end; ++i) {
-    const Index dof = a.dof_start[i], dim = a.dof_start[i + 1] - dof;
-    if (dim == 0) continue;
-    const double* row = a.values + a.value_start[i];
-    const Index width = static_cast<Index>((a.value_start[i + 1] - a.value_start[i]) / dim);
-    const Index last = a.row_start[i + 1];
-    const bool whole = width == 3 * (last - a.row_start[i]);
-    double s0 = 0.0, s1 = 0.0, s2 = 0.0;
-    Index k = a.row_start[i];
-    for (Index piece = 0; piece < width;) {
-      Index length = 0;
-      if (whole) {
-        for (; k < last && length < gather_capacity; ++k, length += 3) {
-          const double* from = x + a.column_dof[k];
-          gathered[length] = from[0], gathered[length + 1] = from[1], gathered[length + 2] = from[2];
-        }
-      } else {
-        for (; k < last; ++k) {
-          const Index from = a.column_dof[k], d = a.dof_start[a.column[k] + 1] - from;
-          if (length + d > gather_capacity) break;
-          for (Index c = 0; c < d; ++c) gathered[length + c] = x[from + c];
-          length += d;
-        }
-      }
-      // A row of fewer than three unknowns repeats its first instead: one loop for all.
-      const double* p0 = row + piece;
-      const double* p1 = dim > 1 ? p0 + width : p0;
-      const double* p2 = dim > 2 ? p1 + width : p0;
-#pragma omp simd reduction(+ : s0, s1, s2)
-      for (Index c = 0; c < length; ++c) {
-        const double g = gathered[c];
-        s0 += p0[c] * g;
-        s1 += p1[c] * g;
-        s2 += p2[c] * g;
-      }
-      piece += length;
-    }
-    const double s[3] = {s0, s1, s2};
-    for (Index r = 0; r < dim; ++r) {
-      y[dof + r] = s[r];
-      xax += x[dof + r] * s[r];
-    }
+    const Index dim = a.dof_start[i + 1] - a.dof_start[i];
+    if (dim == 3)
+      xax += one_row<3>(a, i, x, y, gathered);
+    else if (dim == 2)
+      xax += one_row<2>(a, i, x, y, gathered);
+    else if (dim == 1)
+      xax += one_row<1>(a, i, x, y, gathered);
   }
   return xax;
 }
@@ -114,7 +154,8 @@ TAUT_MULTIVERSION double rows_product_1(const RowView& a, Index begin, Index end
 
 double rows_product(const BlockCsr& a, Index begin, Index end, const double* x, double* y) {
   const BlockPattern& p = *a.pattern;
-  const RowView view{p.row_start.data(), p.column.data(), p.column_dof.data(), p.dof_start.data(), p.value_start.data(), a.values.data()};
+  const RowView view{p.row_start.data(), p.column.data(),      p.column_dof.data(), p.block_offset.data(),
+                     p.dof_start.data(), p.value_start.data(), a.values.data(),     p.dofs()};
   return p.uniform_dim == 1 ? rows_product_1(view, begin, end, x, y) : rows_product_blocks(view, begin, end, x, y);
 }
 
@@ -127,8 +168,9 @@ Index BlockPattern::find(Index i, Index j) const {
 }
 
 Offset BlockPattern::bytes() const {
-  return static_cast<Offset>(sizeof(Index) * (dof_start.size() + row_start.size() + column.size() + column_dof.size() + block_offset.size() + diagonal.size()) +
-                             sizeof(Offset) * value_start.size());
+  return static_cast<Offset>(
+      sizeof(Index) * (dof_start.size() + row_start.size() + column.size() + column_dof.size() + block_offset.size() + diagonal.size()) +
+      sizeof(Offset) * value_start.size());
 }
 
 std::shared_ptr<const BlockPattern> make_pattern(std::vector<std::vector<Index>> columns, std::span<const Index> dims) {
@@ -182,7 +224,8 @@ double multiply_dot(const BlockCsr& a, std::span<const double> x, std::span<doub
 Offset multiply_bytes(const BlockCsr& a) {
   const BlockPattern& p = *a.pattern;
   return static_cast<Offset>(a.values.size() * sizeof(double) + p.column.size() * sizeof(Index)) +
-         Offset{p.rows()} * static_cast<Offset>(sizeof(Index) + sizeof(Offset)) + Offset{2} * p.dofs() * static_cast<Offset>(sizeof(double));
+         Offset{p.rows()} * static_cast<Offset>(sizeof(Index) + sizeof(Offset)) +
+         Offset{2} * p.dofs() * static_cast<Offset>(sizeof(double));
 }
 
 std::vector<double> diagonal_of(const BlockCsr& a) {

@@ -7,8 +7,7 @@
 //
 //   panels   one after the other in the order of elimination: the factor L, which the solves stream through
 //   updates  in an arena: an update lives from its front's elimination until its parent has taken it in; later ones reuse the place. Tasks
-//   that may run
-//            at the same time get places that do not overlap.
+//            that may run at the same time get places that do not overlap.
 //   vector   slabs() R entries a front: what the solves work on
 //
 // Tasks: whole subtrees whose work is a small share of all, each eliminated by one thread in order; every front above them is a task of its
