@@ -108,7 +108,7 @@ TEST(SpringLaw, DampingIsMinusTheVelocityGradientOfTheForce) {
     }
 }
 
-// What is dropped is what MATH names: only the transverse term, only in compression; and the damping force's change with x.
+// What is dropped is what docs/mathematics.md names: only the transverse term, only in compression; and the damping force's change with x.
 TEST(SpringLaw, DroppedTermsAreTheNamedOnes) {
   for (const Case& c : cases())
     for (const auto& [length, room] : lengths(c)) {

@@ -112,7 +112,7 @@ inline Tension tension_of(const SpringRow& s, double length, const nlohmann::jso
   return {s.stiffness * stretch, s.stiffness, false};
 }
 
-// K, D and force of the springs of one class at the dumped state; MATH: K_s = T' e eᵀ + max(T/L, 0) (I - e eᵀ), D_s = k_d e eᵀ.
+// K, D and force of the springs of one class at the dumped state; docs/mathematics.md, 2: K_s = T' e eᵀ + max(T/L, 0) (I - e eᵀ), D_s = k_d e eᵀ.
 struct SpringSums {
   Matrix k, d;
   Vector f;

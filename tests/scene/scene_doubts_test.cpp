@@ -42,7 +42,7 @@ INSTANTIATE_TEST_SUITE_P(
         Advice{"fall for ever", {"cloth.pin=[]", "solid=[]"}, {"cloth.pin=[]"}},
         Advice{"less than fabrics do", {"cloth.node_mass=1e-6"}, {"cloth.node_mass=8e-6"}},
         Advice{"more than fabrics do", {"cloth.node_mass=1e-3"}, {"cloth.node_mass=1.5e-4"}},
-        // The paper's 6.67 ms, at which IMEX has no business: MATH's bound is 5.6 ms without bend springs, 5.2 with.
+        // The paper's 6.67 ms, at which IMEX has no business: the bound is 5.6 ms without bend springs, 5.2 with.
         Advice{"unstable on slack cloth", {"time.integrator=imex", "time.step=6.67e-3"}, {"time.integrator=imex", "time.step=5e-3"}},
         Advice{"unstable on slack cloth",
                {"time.integrator=imex", "time.step=6.67e-3"},
@@ -80,7 +80,7 @@ TEST(ClothEstimate, MatchesTheSpringsOfAnInnerNode) {
   EXPECT_NEAR(e.mass, 1.8, 1e-14);
 }
 
-// The paper's setting: h² (2 k_shear + 2 k_bend)/m, from which MATH's bound follows.
+// The paper's setting: h² (2 k_shear + 2 k_bend)/m, from which the bound follows.
 TEST(ClothEstimate, RhoOfThePapersSheet) {
   const Scene scene = ball({});
   const ClothEstimate e = estimate(scene.cloths[0], start_shape(scene.cloths[0], scene.folder));

@@ -1,4 +1,4 @@
-// The bound of MATH.md section 5 on real cloth matrices: λmax(P⁻¹A) <= 2, λmin(P⁻¹A) >= 1/(1+ρ), and with it the number of corePCG's
+// The bound of docs/mathematics.md, 5 on real cloth matrices: λmax(P⁻¹A) <= 2, λmin(P⁻¹A) >= 1/(1+ρ), and with it the number of corePCG's
 // iterations, measured by dense eigenvalues, over stiffnesses, time steps and constraints.
 
 #include "taut/solve/core_bound.h"

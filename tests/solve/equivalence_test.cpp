@@ -1,5 +1,5 @@
 // What the methods have in common: MPCG takes uPCG's steps, the choice of U matters to a scalar diagonal only, and Eq. 10, the pre-filtered
-// form and the direct solution are the same solution (MATH.md section 3).
+// form and the direct solution are the same solution (docs/mathematics.md, 3).
 
 #include <gtest/gtest.h>
 

@@ -89,7 +89,7 @@ TEST(Order, EulerAndImexAreOfOrderOneAndBdf2OfOrderTwo) {
 }
 
 // Shear springs alone on a flat square grid, explicit under IMEX: v += h f/m, x += h v is stable for h² λmax/m < 4, and λmax <= 4 k_shear
-// (four diagonals a node, MATH's L <= 2 D), hence "h² k_shear/m < 1". On a grid of some size the bound is nearly met.
+// (four diagonals a node, L <= 2 D), hence "h² k_shear/m < 1". On a grid of some size the bound is nearly met.
 TEST(Imex, IsStableUpToItsBoundAndNotBeyond) {
   constexpr double mass = 0.01, k_shear = 0.3;
   const GridShape shape{.nu = 9, .nv = 9};

@@ -45,7 +45,7 @@ std::vector<FlatnessCell> cells_of(const BenchOptions& options) {
   return cells;
 }
 
-// The bound on the reduction of the A-norm error (MATH.md section 5), not on the stop rule's.
+// The bound on the reduction of the A-norm error (docs/mathematics.md, 5), not on the stop rule's.
 int bound_iterations(double rho, double error) {
   return static_cast<int>(std::ceil(0.5 * std::sqrt(2.0 * (1.0 + rho)) * std::log(2.0 / error)));
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Per-node constraints of one step: which directions of a node are prescribed, and how far it moves along them. MATH.md's section 3,
+// Per-node constraints of one step: which directions of a node are prescribed, and how far it moves along them. docs/mathematics.md, 3,
 // paper Eq. 3, 4, 12. Nothing downstream of this type asks where a constraint came from.
 //
 //   ndof(i)          3, 2, 1 or 0 free directions of node i

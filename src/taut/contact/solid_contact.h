@@ -1,5 +1,5 @@
 #pragma once
-// Contact of cloth nodes with solids as an active set of constraints (MATH.md's section 3, points 5 and 6; paper Eq. 3-6). Knows nothing of
+// Contact of cloth nodes with solids as an active set of constraints (docs/mathematics.md, 3.5 and 3.6; paper Eq. 3-6). Knows nothing of
 // integrators: it hands over constraints and friction impulses, and judges the constraint impulses that come back.
 //
 //   contact          a pair (node, solid). Its normal n and distance say n·(x_end - x_start) = distance: the node ends on the plane that

@@ -19,7 +19,7 @@
 
 namespace taut {
 
-// The core is chosen by class and strength (MATH.md section 5).
+// The core is chosen by class and strength (docs/mathematics.md, 5).
 enum class ForceClass { stretch, shear, bend, contact };
 const char* name_of(ForceClass force_class);
 

@@ -1,5 +1,5 @@
 #pragma once
-// The law of one spring between nodes i and j (MATH.md section 2; Provot 1995; Choi & Ko 2002):
+// The law of one spring between nodes i and j (docs/mathematics.md, 2; Provot 1995; Choi & Ko 2002):
 //
 //   d = x_j - x_i,  L = |d|,  e = d/L,  L0 rest length                                        m
 //   force on i   f_i = T(L) e + k_d e eᵀ (v_j - v_i),   f_j = -f_i                            N

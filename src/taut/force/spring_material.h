@@ -1,5 +1,5 @@
 #pragma once
-// Material of a mass-spring cloth (Provot 1995; Choi & Ko 2002). MATH.md section 2; kernels in force/spring.h.
+// Material of a mass-spring cloth (Provot 1995; Choi & Ko 2002). docs/mathematics.md, 2; kernels in force/spring.h.
 //
 //   k_stretch, k_shear  N/m a spring
 //   k_bend              N/m a spring with bend_model linear; N·m² (a flexural rigidity) with choi_ko

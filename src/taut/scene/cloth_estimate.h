@@ -1,5 +1,5 @@
 #pragma once
-// Estimates from a scene's numbers alone, of what the time step and the solver will meet. MATH.md, sections 1 and 5.
+// Estimates from a scene's numbers alone, of what the time step and the solver will meet. docs/mathematics.md, 1 and 5.
 //
 //   m        kg, mass of a node inside the cloth
 //   λ        N/m, the largest eigenvalue of the 3x3 block D_R,i that the shear and bend springs give a node of the flat cloth at rest.

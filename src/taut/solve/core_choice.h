@@ -1,5 +1,5 @@
 #pragma once
-// Which springs make the matrix core, chosen by strength (MATH.md section 5). A link is a pair of nodes i, j that the matrix couples, with
+// Which springs make the matrix core, chosen by strength (docs/mathematics.md, 5). A link is a pair of nodes i, j that the matrix couples, with
 // all springs between them; leaving it out of the core adds its 3x3 block to D_R of both nodes:
 //
 //   c_ij >= λmax of that block, h² k + h k_d of its springs in any state and direction             kg
@@ -10,7 +10,7 @@
 // factor's symbolic work. O(links log links), once per step size.
 //
 // Element models of more than two nodes: the diagonal block of an element is minus the sum of its row's other blocks, so ρ holds with c_ij
-// the norm of the block (i, j); the bound on the eigenvalues is then MATH.md's for q nodes.
+// the norm of the block (i, j); the bound on the eigenvalues is then that for q nodes (docs/mathematics.md, 5).
 
 #include <cstdint>
 #include <span>

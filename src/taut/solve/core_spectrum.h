@@ -1,5 +1,5 @@
 #pragma once
-// The bound of corePCG (MATH.md section 5) beside what is measured on one system:
+// The bound of corePCG (docs/mathematics.md, 5) beside what is measured on one system:
 //
 //   1/(1+ρ) <= λ(P⁻¹A) <= 2        cond(P⁻¹A) <= 2 (1+ρ)        iterations <= core_iteration_bound(ρ, start, tolerance)
 //

@@ -1,5 +1,5 @@
 #pragma once
-// The two matrices that keep A's size while constraints come and go (MATH.md section 3):
+// The two matrices that keep A's size while constraints come and go (docs/mathematics.md, 3):
 //
 //   S A S + d (I-S)   symmetric: the pre-filtered form (Tamstorf et al. 2015)          S A + d (I-S)   the paper's Eq. 10
 //

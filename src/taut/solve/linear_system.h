@@ -10,7 +10,7 @@
 //   guess        3N doubles, last step's x, or empty; iterative methods start at S guess + (I-S) z (Ascher & Boxerman 2003)
 //   positions    3N doubles, m, where the nodes are; or empty. Only multigrid uses them: for the rotations in its near-null space
 //   core         one byte per block of A, 1 for the blocks of the matrix core (paper Section 6); empty: only block-diagonal blocks
-//   rho          ρ of MATH.md section 5 for that core: what the blocks outside it add to the diagonal, relative to the masses; bounds
+//   rho          ρ of docs/mathematics.md, 5 for that core: what the blocks outside it add to the diagonal, relative to the masses; bounds
 //                corePCG's iterations. Negative: not known
 // Units: A kg, b N s, x m/s when x is a velocity change; A kg, b kg m, x m when it is a displacement (BDF2).
 

@@ -4,7 +4,7 @@
 //   scalar   M_p = diag(A)                 block   M_p = the 3x3 diagonal blocks of A
 //   full space     z = M_p⁻¹ r             reduced space   z_i = U_iᵀ M_p,i⁻¹ U_i r_i
 //
-// With the second, uPCG takes exactly MPCG's steps (Ascher & Boxerman 2003; MATH.md 3.2).
+// With the second, uPCG takes exactly MPCG's steps (Ascher & Boxerman 2003; docs/mathematics.md, 3.2).
 
 #include "taut/constraint/constraint_set.h"
 #include "taut/linalg/preconditioner.h"

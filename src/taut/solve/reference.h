@@ -1,5 +1,5 @@
 #pragma once
-// A solution to measure others against (MATH.md section 4), and the distance to it:
+// A solution to measure others against (docs/mathematics.md, 4), and the distance to it:
 //
 //   Ã ỹ* = b̃   by sparse Cholesky with iterative refinement       x* = U ỹ* + (I-S) z
 //   anorm_error = |S (x - x*)|_A / |S x*|_A = |ỹ - ỹ*|_Ã / |ỹ*|_Ã,   |u|_A = sqrt(uᵀ A u)

@@ -10,7 +10,7 @@
 //      ic0, ic0_core                     incomplete Cholesky on node blocks, of Ã or of the matrix core (linalg/incomplete_cholesky.h)
 //      ssor                              symmetric Gauss-Seidel, or SolverOptions::ssor_omega (linalg/ssor.h)
 //      amg                               upcg, ppcg: smoothed aggregation with the rigid motions (linalg/smoothed_aggregation.h)
-//   eq10[:block_diagonal|:ilu0]          BiCGSTAB on S A + d (I-S), the paper's Eq. 10, which MATH.md shows to be equivalent after all
+//   eq10[:block_diagonal|:ilu0]          BiCGSTAB on S A + d (I-S), the paper's Eq. 10, which is equivalent after all
 //   cholmod, pardiso, eigen_ldlt         direct: sparse Cholesky of Ã (Section 4)
 //   cholmod_reused_analysis              cholmod, its analysis kept while the reduced pattern stays, whatever the options say
 //   pardiso_cgs                          PARDISO's own CG on the factor of an earlier step, its "Pardiso(2)" (Table 2); library

@@ -1,6 +1,6 @@
 #pragma once
 // BDF2 with one linearised solve (Choi & Ko 2002). Formulas: integrator.h. Of order 2 on undamped, extended springs; the Jacobian terms dropped in
-// compression cost order elsewhere (MATH.md sections 1, 2).
+// compression cost order elsewhere (docs/mathematics.md, 1 and 2).
 
 #include "taut/step/euler.h"
 

@@ -1,5 +1,5 @@
 #pragma once
-// Time integration: what linear system a step solves, and what its solution means (MATH.md section 1, paper Eq. 1, 2).
+// Time integration: what linear system a step solves, and what its solution means (docs/mathematics.md, 1, paper Eq. 1, 2).
 //
 //   semi_implicit_euler   (M + hD + h²K) dv = h (f - h K v);   v += dv, x += h v                       (Baraff & Witkin 1998)
 //   imex                  the same, with K and spring D of the stretch springs only; f of all          (Ascher et al. 1997)

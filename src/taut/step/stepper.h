@@ -8,7 +8,7 @@
 //                                with a nonlinear integrator as many as Newton's method takes
 //   commit(state, ...)           takes the last solve's end state (or a corrected one) over
 //
-// Constraint impulse (N s, on each node): j = (I - S)(A u - b), scaled to an impulse (MATH.md 3.6). A positive n·j pushes along n.
+// Constraint impulse (N s, on each node): j = (I - S)(A u - b), scaled to an impulse (docs/mathematics.md, 3.6). A positive n·j pushes along n.
 
 #include <cstdint>
 #include <memory>
@@ -60,7 +60,7 @@ class Stepper {
   ConstrainedSolver& solver() { return *solver_; }
   const ConstrainedSolver& solver() const { return *solver_; }
   double assemble_ms() const { return assemble_ms_; }
-  // ρ of MATH.md section 5 for the assembled system and its core.
+  // ρ of docs/mathematics.md, 5 for the assembled system and its core.
   double remainder_ratio() const;
   // The two cores that a solver may be given, for steps of up to h: all stretch springs, or those that are strong (solve/core_choice.h).
   std::vector<std::uint8_t> stretch_core() const { return assembler_.core_mask(ForceClass::stretch); }
