@@ -30,7 +30,8 @@ bool method_hides_iterates(const Method& method) { return method.solver == "pard
 
 // These analyse once per topology: that is what is measured.
 bool keeps_analysis(const Method& method) {
-  return method.solver == "core_fast" || method.solver == "block_cholesky" || method.solver == "cholmod_reused_analysis";
+  return method.solver == "core_fast" || method.solver == "block_cholesky" || method.solver == "cholmod_reused_analysis" ||
+         method.solver == "auto";
 }
 
 // One method's solver and its samples.

@@ -137,10 +137,10 @@ class ScriptWriter {
         parts.push_back(fmt::format("keyentry {} {}", looks, title));
       }
     }
-    if (figure_.shared_legend && p + 1 == shared_legend_panel()) add_shared_legend(parts);
-    const PlotBox& box = layout_.axes[p];
+    add_shared_legend(p, parts);
+    const PlotBox& box = layout_.axes[figure_.shared_legend ? shared_legend_panel() : p];
     line("set key at screen {:.5f},{:.5f} left top Left reverse samplen 2.6 spacing 1.15 noenhanced tc rgb '#222222'",
-         (box.right + layout_.legend_gap) / layout_.width, (box.top + 6) / layout_.height);
+         (box.right + layout_.legend_gap) / layout_.width, (layout_.axes[p].top + 6) / layout_.height);
     // gnuplot has no axes without something to draw.
     if (!anything) no_data(panel, parts);
     std::string plot;
@@ -156,19 +156,21 @@ class ScriptWriter {
     parts.insert(parts.begin(), "NaN notitle");
   }
 
-  // The panel, from 1, whose right side is the figure's: the last of the first row.
+  // The panel whose right side is the figure's: the last of the first row.
   std::size_t shared_legend_panel() const {
-    return std::min(figure_.panels.size(), static_cast<std::size_t>(std::max(1, figure_.columns)));
+    return std::min(figure_.panels.size(), static_cast<std::size_t>(std::max(1, figure_.columns))) - 1;
   }
 
-  void add_shared_legend(std::vector<std::string>& parts) {
-    std::vector<std::string> done;
-    for (const Panel& panel : figure_.panels)
-      for (const Curve& curve : panel.curves) {
-        if (curve.name.empty() || std::ranges::count(done, curve.name)) continue;
-        done.push_back(curve.name);
-        parts.push_back(fmt::format("keyentry {} title {}", look(look_of(curve.name, 0), curve.style, 0), gnuplot_string(curve.name)));
-      }
+  // gnuplot has no legend that is higher than the panel that it belongs to: each row of panels takes its share.
+  void add_shared_legend(std::size_t p, std::vector<std::string>& parts) {
+    if (!figure_.shared_legend) return;
+    const std::size_t columns = static_cast<std::size_t>(std::max(1, figure_.columns)), row = p / columns;
+    if (p % columns != columns - 1 && p + 1 != figure_.panels.size()) return;
+    const std::vector<const Curve*> legend = shared_legend(figure_);
+    const std::size_t share = shared_legend_rows(figure_), end = std::min(legend.size(), (row + 1) * share);
+    for (std::size_t k = row * share; k < end; ++k)
+      parts.push_back(
+          fmt::format("keyentry {} title {}", look(look_of(legend[k]->name, 0), legend[k]->style, 0), gnuplot_string(legend[k]->name)));
   }
 
   void heat_map(std::size_t p) {

@@ -62,11 +62,26 @@ int panel_height(const Figure& figure) {
     for (const HeatMap& map : panel.heat_map) height = std::max(height, 24.0 * static_cast<double>(map.rows.size()));
     legend = std::max(legend, panel.curves.size());
   }
-  if (!figure.shared_legend) height = std::max(height, 19.0 * static_cast<double>(legend));
+  height = std::max(height, 19.0 * static_cast<double>(figure.shared_legend ? shared_legend_rows(figure) : legend));
   return chosen(figure.panel_height, height);
 }
 
 }  // namespace
+
+std::vector<const Curve*> shared_legend(const Figure& figure) {
+  std::vector<const Curve*> legend;
+  for (const Panel& panel : figure.panels)
+    for (const Curve& curve : panel.curves)
+      if (!curve.name.empty() && std::ranges::none_of(legend, [&](const Curve* c) { return c->name == curve.name; }))
+        legend.push_back(&curve);
+  return legend;
+}
+
+std::size_t shared_legend_rows(const Figure& figure) {
+  const std::size_t columns = static_cast<std::size_t>(std::max(1, figure.columns));
+  const std::size_t rows = std::max<std::size_t>(1, (figure.panels.size() + columns - 1) / columns);
+  return (shared_legend(figure).size() + rows - 1) / rows;
+}
 
 PlotLayout lay_out(const Figure& figure) {
   const int columns = std::max(1, figure.columns), panels = static_cast<int>(figure.panels.size());
