@@ -127,7 +127,7 @@ Figure scale_figure(const Json& rows, const std::string& machine) {
 Figure integrators_figure(const Json& rows, const std::string& machine) {
   Figure figure;
   figure.title = fmt::format("Integrators: distance from the exact motion against time, {} nodes", rows.front().value("nodes", 0));
-  figure.note = "A point a step length, the longest on the left. What blew up is not there. " + machine;
+  figure.note = "A point a step length, joined from the longest to the shortest. What blew up is not there. " + machine;
   figure.columns = 2, figure.shared_legend = true, figure.panel_width = 430, figure.panel_height = 330;
   std::vector<std::pair<std::string, double>> scenes;
   for (const Json& row : rows)
@@ -143,7 +143,6 @@ Figure integrators_figure(const Json& rows, const std::string& machine) {
       if (curve == panel.curves.end()) curve = panel.curves.insert(curve, Curve{name, {}, CurveStyle::line_and_points});
       curve->points.push_back({number(row, "seconds"), 1e3 * number(row, "rms_m")});
     }
-    for (Curve& curve : panel.curves) std::ranges::sort(curve.points, {}, &PlotPoint::x);
     figure.panels.push_back(std::move(panel));
   }
   return figure;
