@@ -121,6 +121,7 @@ class Flatness {
     const std::vector<std::uint8_t> chosen = stepper.chosen_core(cell.h);
     of_auto.core = chosen;
     of_auto.rho = remainder_ratio(*system.matrix, chosen, cloth.external().masses());
+    if (!std::ranges::equal(chosen, system.core)) of_auto.stretch_core = system.core, of_auto.stretch_rho = rho;
     facts["rho_of_auto"] = of_auto.rho;
     std::vector<EqualErrorResult> results;
     for (const std::string& method : methods_) {

@@ -14,7 +14,8 @@ namespace taut {
 
 namespace {
 
-constexpr const char* names[] = {auto_core_method, "upcg:projected_block_diagonal", "upcg:ic0_core", "upcg:ic0", "block_cholesky"};
+constexpr const char* names[] = {auto_core_method, auto_core_method, "upcg:projected_block_diagonal",
+                                 "upcg:ic0_core",  "upcg:ic0",       "block_cholesky"};
 
 constexpr double shortest_patience = 16, longest_patience = 256;  // solves
 constexpr double bar_after_failure = 64;                          // solves
@@ -23,7 +24,7 @@ constexpr double give_up_at = 2.0;                                // times the w
 constexpr double core_condition = 18.0;                           // 2 (1 + ρ) where ρ is not known: that of the chosen core
 constexpr double loosest = 3.0;                                   // times the error that corePCG may leave
 constexpr double worst_condition = 1e12;                          // of what these methods can solve
-constexpr double memory_version = 2;
+constexpr double memory_version = 3;
 
 // Times are sums, the rest is the last attempt's.
 void add_attempt(SolveSummary&& attempt, SolveSummary& sum) {
@@ -68,6 +69,8 @@ MethodWork AutoSolver::work(Method method, const SystemSize& size) const {
   switch (method) {
     case core:
       return core_work(size, known.known() ? known : estimate_factor(size, size.core_nonzeros));
+    case stretch_core:
+      return core_work(size, known.known() ? known : estimate_factor(size, size.stretch_core_nonzeros));
     case block_diagonal:
       return block_diagonal_work(size);
     case ic0_core:
@@ -93,7 +96,8 @@ AutoSolver::Method AutoSolver::choose(const SystemSize& size) const {
   // Untried and not to be tried: it has failed.
   Method best = !tried(core) && records_[core].next_trial > solves_ ? direct : core;
   for (int m = 0; m < method_count; ++m)
-    if (const Method method = static_cast<Method>(m); tried(method) && expected_work(method, size) < expected_work(best, size))
+    if (const Method method = static_cast<Method>(m);
+        tried(method) && available(method, size) && expected_work(method, size) < expected_work(best, size))
       best = method;
   return best;
 }
@@ -105,7 +109,7 @@ AutoSolver::Method AutoSolver::rival_of(Method chosen, const SystemSize& size) c
   double least = to_beat;
   for (int m = 0; m < method_count; ++m) {
     const Method method = static_cast<Method>(m);
-    if (method == chosen || records_[method].next_trial > solves_) continue;
+    if (method == chosen || !available(method, size) || records_[method].next_trial > solves_) continue;
     const MethodWork w = work(method, size);
     const double hoped = method == direct ? w.setup : w.total(tried(method) ? 0.5 * records_[method].iterations : least_trial);
     if (!tried(method) && hoped < to_beat) return method;
@@ -136,6 +140,10 @@ void AutoSolver::run(const LinearSystem& system, std::span<double> x, SolveSumma
 
 double AutoSolver::allowed_condition(const LinearSystem& system) { return system.rho >= 0.0 ? 2.0 * (1.0 + system.rho) : core_condition; }
 
+double AutoSolver::first_condition(Method method, const LinearSystem& system) {
+  return method == stretch_core && system.stretch_rho >= 0.0 ? 2.0 * (1.0 + system.stretch_rho) : block_diagonal_condition(*system.matrix);
+}
+
 double AutoSolver::tolerance_for(Method method, const LinearSystem& system) const {
   const double factor = method == core ? 1.0 : std::min(1.0, std::sqrt(allowed_condition(system) / records_[method].condition));
   return std::max(1e-14, options_.tolerance * factor);
@@ -144,7 +152,7 @@ double AutoSolver::tolerance_for(Method method, const LinearSystem& system) cons
 AutoSolver::Attempt AutoSolver::attempt(Method method, int most_iterations, Solve& solve) {
   // Few iterations would not show how bad it is.
   if (is_incomplete(method) && records_[method].condition == 0.0)
-    records_[method].condition = std::min(worst_condition, block_diagonal_condition(*solve.original.matrix));
+    records_[method].condition = std::min(worst_condition, first_condition(method, solve.original));
   ConstrainedSolver& with = solver(method);
   const double tolerance = tolerance_for(method, solve.original);
   if (options_.max_iterations > 0) most_iterations = std::min(most_iterations, options_.max_iterations);
@@ -153,7 +161,9 @@ AutoSolver::Attempt AutoSolver::attempt(Method method, int most_iterations, Solv
   with.coefficients = &record;
   with.observer = observer;
   SolveSummary s;
-  run_other(with, solve.system, solve.x, s);
+  LinearSystem system = solve.system;
+  if (method == stretch_core) system.core = system.stretch_core, system.rho = system.stretch_rho, s.on_stretch_core = true;
+  run_other(with, system, solve.x, s);
   if (s.status.ok() && !all_finite(solve.x)) s.status = {Outcome::not_finite, "the solution holds NaN or infinity"};
   learn(method, s, record, tolerance, solve);
 

@@ -2,7 +2,10 @@
 // The solver `auto`: in each solve the method that should cost least, of
 //
 //   core_fast                        on whatever core the system has, with a bound on its iterations; the measure of the others
-//   upcg:projected_block_diagonal    no set-up; for soft or quiet cloth. Projected: the bound on its condition holds for the blocks of Ã, not
+//                                    and, where that is another, on the paper's: at soft stretch springs or very stiff ones it may be
+//                                    better
+//   upcg:projected_block_diagonal    no set-up; for soft or quiet cloth. Projected: the bound on its condition holds for the blocks of Ã,
+//   not
 //                                    for those of A restricted to the free directions
 //   upcg:ic0_core, upcg:ic0          little set-up, but iterations grow with the stiffness, and they may break down
 //   block_cholesky                   direct; where nearly all springs are in the core
@@ -22,7 +25,7 @@
 // (by Lanczos, from the coefficients of its own last solve) is above corePCG's bound gets a tolerance as much smaller; what stopped too
 // early goes on with another method.
 //
-// Before a method's first solve its condition is taken for the bound of the block diagonal's (solve/core_bound.h).
+// Before a method's first solve its condition is taken for its core's bound, or that of the block diagonal (solve/core_bound.h).
 //
 // Deterministic. What later choices depend on is in memory(), a few numbers, so that a resumed simulation takes the same way.
 
@@ -49,8 +52,10 @@ class AutoSolver : public ConstrainedSolver {
   void run(const LinearSystem& system, std::span<double> x, SolveSummary& summary) override;
 
  private:
-  enum Method : int { core, block_diagonal, ic0_core, ic0, direct, method_count };
+  enum Method : int { core, stretch_core, block_diagonal, ic0_core, ic0, direct, method_count };
   static bool is_incomplete(Method method) { return method != core && method != direct; }
+  static bool available(Method method, const SystemSize& size) { return method != stretch_core || size.stretch_core_nonzeros > 0.0; }
+  static double first_condition(Method method, const LinearSystem& system);
   static double allowed_condition(const LinearSystem& system);
 
   // What is remembered of a method. All numbers are doubles, so that a memory is a list of them.

@@ -1,6 +1,6 @@
 #pragma once
-// Which springs make the matrix core, chosen by strength (docs/mathematics.md, 5). A link is a pair of nodes i, j that the matrix couples, with
-// all springs between them; leaving it out of the core adds its 3x3 block to D_R of both nodes:
+// Which springs make the matrix core, chosen by strength (docs/mathematics.md, 5). A link is a pair of nodes i, j that the matrix couples,
+// with all springs between them; leaving it out of the core adds its 3x3 block to D_R of both nodes:
 //
 //   c_ij >= λmax of that block, h² k + h k_d of its springs in any state and direction             kg
 //   left out:  sum over the links left out at i of c_ij <= target m_i at every node, so ρ = max_i λmax(D_R,i)/m_i <= target

@@ -83,6 +83,7 @@ KrylovResult CoreFast::iterate(const BlockCsr& a, std::span<double> x, int done,
   double delta = factor_.solve_forward(r_), previous = 0.0;
   result.start_value = relative(delta);
   bool is_indefinite = false;
+  if (coefficients) *coefficients = {};
   while (delta > limit && result.iterations < max_iterations) {
     factor_.solve_backward(result.iterations == 0 ? 0.0 : delta / previous, c_);
     const double curvature = multiply_dot(a, c_, q_);
@@ -90,7 +91,8 @@ KrylovResult CoreFast::iterate(const BlockCsr& a, std::span<double> x, int done,
       is_indefinite = true;
       break;
     }
-    step_along(delta / curvature, c_, q_, x, r_);
+    const double alpha = delta / curvature;
+    step_along(alpha, c_, q_, x, r_);
     if (watch_factor && result.iterations % check_every == check_every - 1) {
       const double quality = factor_quality(a);
       if (!(std::abs(quality - 1.0) < worst_quality)) {
@@ -105,6 +107,7 @@ KrylovResult CoreFast::iterate(const BlockCsr& a, std::span<double> x, int done,
     previous = delta;
     delta = factor_.solve_forward(r_);
     ++result.iterations;
+    if (coefficients) coefficients->alpha.push_back(alpha), coefficients->beta.push_back(delta / previous);
     if (observer) observer(done + result.iterations, relative(delta), x);
   }
   result.stop_value = relative(delta);

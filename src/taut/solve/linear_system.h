@@ -12,6 +12,7 @@
 //   core         one byte per block of A, 1 for the blocks of the matrix core (paper Section 6); empty: only block-diagonal blocks
 //   rho          ρ of docs/mathematics.md, 5 for that core: what the blocks outside it add to the diagonal, relative to the masses; bounds
 //                corePCG's iterations. Negative: not known
+//   stretch_core, stretch_rho    the paper's core and its ρ where `core` is another, else empty: `auto` tries both
 // Units: A kg, b N s, x m/s when x is a velocity change; A kg, b kg m, x m when it is a displacement (BDF2).
 
 #include <cstdint>
@@ -33,6 +34,8 @@ struct LinearSystem {
   std::span<const double> positions;
   std::span<const std::uint8_t> core;
   double rho = -1.0;
+  std::span<const std::uint8_t> stretch_core;
+  double stretch_rho = -1.0;
 };
 
 // What a solve did. Times in milliseconds.
@@ -52,6 +55,7 @@ struct SolveSummary {
   double factor_nonzeros = 0.0;  // entries of the sparse Cholesky factor, and operations to form it; 0 where there is none
   double factor_flops = 0.0;
   int preparations = 1;              // of the preconditioner: more than one where IC(0) had to find a shift
+  bool on_stretch_core = false;      // solved on LinearSystem::stretch_core instead of its core
   const char* precision = "double";  // of the factor that the answer came from: "single" or "double"
   int fallbacks = 0;                 // times that single precision, or a method that `auto` tried first, failed and another took over
   double memory_bytes = 0.0;         // what the method holds beyond A and the vectors

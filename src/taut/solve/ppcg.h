@@ -1,6 +1,6 @@
 #pragma once
-// Pre-filtered PCG (Tamstorf et al. 2015; docs/mathematics.md, 3.4): the symmetric cousin of Eq. 10, whose size and pattern never change while
-// constraints come and go,
+// Pre-filtered PCG (Tamstorf et al. 2015; docs/mathematics.md, 3.4): the symmetric cousin of Eq. 10, whose size and pattern never change
+// while constraints come and go,
 //
 //   (S A S + d (I-S)) y = S (b - A (I-S) z)          x = y + (I-S) z          d: a mass per node, see node_scale.h
 //

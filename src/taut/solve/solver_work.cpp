@@ -13,9 +13,11 @@ SystemSize size_of(const LinearSystem& system) {
   // Held nodes lie side by side, so what they take away goes with their number.
   const double free = size.unknowns / std::max(1.0, static_cast<double>(p.dofs()));
   const double per_block = static_cast<double>(p.value_count()) / std::max<Index>(1, p.blocks());
-  const double core_blocks = system.core.empty() ? p.rows() : static_cast<double>(std::ranges::count(system.core, std::uint8_t{1}));
+  const auto blocks_of = [](std::span<const std::uint8_t> core) { return static_cast<double>(std::ranges::count(core, std::uint8_t{1})); };
+  const double core_blocks = system.core.empty() ? p.rows() : blocks_of(system.core);
   size.nonzeros = free * static_cast<double>(p.value_count());
   size.core_nonzeros = free * core_blocks * per_block;
+  size.stretch_core_nonzeros = free * blocks_of(system.stretch_core) * per_block;
   return size;
 }
 

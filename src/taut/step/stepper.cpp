@@ -68,6 +68,9 @@ void Stepper::choose_core(double h) {
   if (!chooses_core_) return;
   core_ = chosen_core(h);
   core_springs_ = assembler_.elements_in(core_);
+  stretch_core_ = stretch_core();
+  stretch_core_springs_ = assembler_.elements_in(stretch_core_);
+  if (stretch_core_ == core_) stretch_core_.clear();
 }
 
 void Stepper::begin(const State& state, double h) {
@@ -80,7 +83,7 @@ void Stepper::begin(const State& state, double h) {
   guess_ = state.last;
   current_guess_ = guess_;
   current_a_ = &a_;
-  if (wants_rho_) rho_ = first_rho_ = remainder_ratio();
+  if (wants_rho_) measure_rho(), first_rho_ = rho_, first_stretch_rho_ = stretch_rho_;
   assemble_ms_ = timer.milliseconds();
 }
 
@@ -93,7 +96,7 @@ SolveSummary Stepper::solve(const ConstraintSet& constraints, std::span<const Ve
   for (std::size_t i = 0; i < impulses.size(); ++i) rhs_[i] += per_impulse * impulses[i];
   integrator_->prescribe(constraints, *state_, h_, z_);
   current_a_ = &a_;
-  rho_ = first_rho_;
+  rho_ = first_rho_, stretch_rho_ = first_stretch_rho_;
   current_guess_ = guess_;
   newton_iterations_ = 0;
   SolveSummary summary = solver.solve(system(), flat(unknown_));
@@ -143,7 +146,7 @@ double Stepper::relinearise(const ConstraintSet& constraints, std::span<const Ve
   const double per_impulse = integrator_->rhs_per_impulse(*state_, h_);
   for (std::size_t i = 0; i < given_.size(); ++i) rhs_[i] += per_impulse * given_[i];
   current_a_ = &relinearised_a_;
-  if (wants_rho_) rho_ = remainder_ratio();
+  if (wants_rho_) measure_rho();
   multiply(relinearised_a_, flat(unknown), flat(impulse_));
   for (std::size_t i = 0; i < rhs_.size(); ++i) impulse_[i] = rhs_[i] - impulse_[i];
   assemble_ms_ += timer.milliseconds();
@@ -159,6 +162,11 @@ double Stepper::free_norm(const ConstraintSet& constraints, std::span<const Vec3
   }));
 }
 
+void Stepper::measure_rho() {
+  rho_ = remainder_ratio();
+  if (!stretch_core_.empty()) stretch_rho_ = taut::remainder_ratio(*current_a_, stretch_core_, external_.masses());
+}
+
 double Stepper::remainder_ratio() const { return taut::remainder_ratio(*current_a_, core_, external_.masses()); }
 
 LinearSystem Stepper::system() const {
@@ -170,6 +178,8 @@ LinearSystem Stepper::system() const {
   system.guess = flat(current_guess_);
   system.core = core_;
   system.rho = rho_;
+  system.stretch_core = stretch_core_;
+  system.stretch_rho = stretch_rho_;
   if (state_) system.positions = flat(state_->x);
   return system;
 }

@@ -8,7 +8,8 @@
 //                                with a nonlinear integrator as many as Newton's method takes
 //   commit(state, ...)           takes the last solve's end state (or a corrected one) over
 //
-// Constraint impulse (N s, on each node): j = (I - S)(A u - b), scaled to an impulse (docs/mathematics.md, 3.6). A positive n·j pushes along n.
+// Constraint impulse (N s, on each node): j = (I - S)(A u - b), scaled to an impulse (docs/mathematics.md, 3.6). A positive n·j pushes
+// along n.
 
 #include <cstdint>
 #include <memory>
@@ -51,6 +52,7 @@ class Stepper {
   std::span<const std::uint8_t> core_mask() const { return core_; }
   // Elements whose blocks off the diagonal are in the core.
   Index core_springs() const { return core_springs_; }
+  Index stretch_core_springs() const { return stretch_core_.empty() ? core_springs_ : stretch_core_springs_; }
   std::span<const Vec3> unknown() const { return unknown_; }
   // The impulses that the last solve was given, N s; empty if none.
   std::span<const Vec3> impulses() const { return given_; }
@@ -70,6 +72,7 @@ class Stepper {
   SolveSummary solve_nonlinear(const ConstraintSet& constraints, ConstrainedSolver& solver, SolveSummary first);
   double relinearise(const ConstraintSet& constraints, std::span<const Vec3> unknown);
   double free_norm(const ConstraintSet& constraints, std::span<const Vec3> momentum) const;
+  void measure_rho();
   void forget_other_unknown(State& state, const std::string& solved_for) const;
 
   std::unique_ptr<Integrator> integrator_;
@@ -81,8 +84,10 @@ class Stepper {
   bool chooses_core_, wants_rho_;
   double core_h_ = 0.0;
   double rho_ = -1.0, first_rho_ = -1.0;  // of current_a_ and a_; negative: not asked for
+  double stretch_rho_ = -1.0, first_stretch_rho_ = -1.0;
   std::vector<std::uint8_t> core_;
-  Index core_springs_ = 0;
+  std::vector<std::uint8_t> stretch_core_;  // where core_ is another
+  Index core_springs_ = 0, stretch_core_springs_ = 0;
 
   const State* state_ = nullptr;
   const ConstraintSet* constraints_ = nullptr;
