@@ -23,7 +23,7 @@ std::vector<Method> methods_of_table2() {
   const bool pardiso = make_cholesky("pardiso") != nullptr;
   if (!pardiso) fmt::print("PARDISO's columns are left out: oneMKL is not built into this program; './taut setup pardiso' fetches it.\n\n");
   std::vector<Method> methods{{"mpcg:diagonal", semi}, {"cholmod", semi}};
-  methods.insert(methods.end(), {{"cholmod_reused_analysis", semi}, {"block_cholesky", semi}, {"core_fast", semi}, {"auto", semi}});
+  methods.insert(methods.end(), {{"block_cholesky", semi}, {"core_fast", semi}, {"auto", semi}});
   if (pardiso) methods.insert(methods.end(), {{"pardiso", semi}, {"pardiso_cgs", semi}});
   methods.insert(methods.end(), {{"core_pcg", semi, "vectors"}, {"core_pcg", semi, "matrix"}});
   if (pardiso) methods.push_back({"core_pcg:pardiso", semi, "vectors"});
