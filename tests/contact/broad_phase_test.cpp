@@ -131,7 +131,7 @@ TEST(BroadPhase, BoxesAreRoundedOutwards) {
 }
 
 TEST(BroadPhase, VerticesThatAreNotFiniteMeetEverything) {
-  constexpr Index lost = 7;
+  static constexpr Index lost = 7;
   Soup soup = make_soup(5, 6, 6, 0, 0.0, 0.0);
   const auto others =
       std::ranges::count_if(soup.surface.triangles, [](const Triangle& t) { return std::ranges::find(t, lost) == t.end(); });
