@@ -22,4 +22,15 @@ void append_little_endian(std::string& bytes, T value) {
   bytes.append(raw, sizeof(T));
 }
 
+// The value whose bytes begin at `bytes`.
+template <class T>
+T read_little_endian(const char* bytes) {
+  char raw[sizeof(T)];
+  std::memcpy(raw, bytes, sizeof(T));
+  swap_if_big_endian(raw, sizeof(T), 1);
+  T value;
+  std::memcpy(&value, raw, sizeof(T));
+  return value;
+}
+
 }  // namespace taut
