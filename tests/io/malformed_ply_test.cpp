@@ -19,8 +19,8 @@ TEST(MalformedPly, EachFileIsReadRightlyOrRefusedWithItsPlace) {
   check_table(
       {
           {"assimp-crash-30d6d0f7c529b3b66b4131700b7a4580cd7082df.ply", ":7:10", "the type is '\\x00\\x00\\x00"},
-          // The first byte of the data is that of a line end. A cube of edge 1 from x = 5.967 on: 8 x 5.967 + 12.
-          {"assimp-cube_binary_starts_with_nl.ply", "", "8 vertices 12 triangles sum 64"},
+          // The first byte of the data is that of a line end. A cube of edge 1 from x = 5.967 on: 8 x 5.967 + 12 = 59.7.
+          {"assimp-cube_binary_starts_with_nl.ply", "", "8 vertices 12 triangles sum 60"},
           {"assimp-float-color.ply", "", "3 vertices 1 triangles sum 500"},
           // It says `format ascii` without a version; later come two elements `vertex`.
           {"assimp-payload_JVN42386607", ":2:13", "the format's version is ''; 1.0 was expected"},

@@ -84,12 +84,12 @@ TEST(SequenceWriter, NamesThatBecomeAlikeAreNumbered) {
   const TemporaryFolder folder;
   std::vector<SequenceObject> objects = two_objects();
   objects[0].name = "1 ä";
-  objects[1].name = "1*::";
-  const auto writer = make_sequence_writer(sequence_format("obj"), {.folder = folder / "out"}, objects);
+  objects[1].name = "1*:";
+  const auto writer = make_sequence_writer(sequence_format("obj"), {.folder = folder / "out", .title = {}}, objects);
   EXPECT_EQ(writer->objects()[0].stem, "_1___");
-  EXPECT_EQ(writer->objects()[1].stem, "_1____");
+  EXPECT_EQ(writer->objects()[1].stem, "_1__");
   objects[1].name = objects[0].name;
-  EXPECT_EQ(make_sequence_writer(sequence_format("obj"), {.folder = folder / "out"}, objects)->objects()[1].stem, "_1____2");
+  EXPECT_EQ(make_sequence_writer(sequence_format("obj"), {.folder = folder / "out", .title = {}}, objects)->objects()[1].stem, "_1____2");
 }
 
 TEST(SequenceWriter, MeshFilesReadBack) {
@@ -123,7 +123,7 @@ TEST(SequenceWriter, AGltfFileThatNoProgramOpensIsRefusedBeforeItIsWritten) {
   const TemporaryFolder folder;
   std::vector<SequenceObject> objects = two_objects();
   objects[0].points = 100'000;
-  const SequenceOptions options{.folder = folder / "out", .frames = 500};
+  const SequenceOptions options{.folder = folder / "out", .title = {}, .frames = 500};
   try {
     make_sequence_writer(sequence_format("gltf"), options, objects);
     FAIL() << "no InputError";
