@@ -3,8 +3,8 @@
 #include "taut/base/error.h"
 #include "taut/picture/contact_sheet.h"
 #include "taut/picture/render.h"
-#include "taut/picture/solid_mesh.h"
 #include "taut/scene/run.h"
+#include "taut/scene/solid_shapes.h"
 
 namespace taut {
 
@@ -19,24 +19,6 @@ std::vector<int> chosen_frames(int count) {
   std::vector<int> frames;
   for (int t = 0; t < tiles; ++t) frames.push_back(tiles == 1 ? 0 : t * (count - 1) / (tiles - 1));
   return frames;
-}
-
-Isometry isometry(const Pose& pose) {
-  Isometry result = Isometry::Identity();
-  result.translate(pose.translation);
-  result.rotate(pose.rotation);
-  return result;
-}
-
-SolidMesh mesh_of(const Solid& solid, double time) {
-  const Isometry pose = isometry(solid.pose(time));
-  switch (solid.shape) {
-    case SolidShape::sphere: return make_sphere_mesh(solid.radius, pose);
-    case SolidShape::plane: return make_disc_mesh(3.0, pose);
-    case SolidShape::cylinder: return make_cylinder_mesh(solid.radius, solid.height, pose);
-    case SolidShape::box: return make_box_mesh(solid.size, pose);
-  }
-  return {};
 }
 
 // A flat patch in cloth coordinates of about 5 cm, so that stretch shows.

@@ -50,7 +50,7 @@ struct Cloth {
   // Shape: a grid (Provot springs), or a triangle mesh from a file (stretch on edges, bend across edges).
   bool from_file = false;
   GridShape grid;
-  std::filesystem::path mesh;  // OBJ; absolute after reading (in a file: relative to it)
+  std::filesystem::path mesh;  // OBJ or PLY; absolute after reading (in a file: relative to it)
   double scale = 1.0;          // of the file's coordinates; 0.01 for centimetres
   Pose placement;              // applied after scale
   bool y_up = false;           // turn Y-up files to Taut's Z-up
