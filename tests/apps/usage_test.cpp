@@ -22,7 +22,7 @@ std::vector<std::string> verbs(const WorkFolder& folder) {
 TEST(Usage, EveryVerbHasHelpWithAnExample) {
   const WorkFolder folder;
   const std::vector<std::string> names = verbs(folder);
-  for (const char* verb : {"run", "resume", "check", "dump", "solve", "bench", "export", "plot"})
+  for (const char* verb : {"run", "resume", "check", "dump", "solve", "bench", "export", "plot", "render"})
     EXPECT_TRUE(std::ranges::find(names, verb) != names.end()) << verb << " is not listed by --help";
   for (const std::string& verb : names) {
     const ProgramEnd help = taut(folder, {verb, "--help"});
@@ -49,6 +49,11 @@ TEST(Usage, BadUsageIsExitCodeTwo) {
                                                   {"dump", "small.toml", "--step", "0", "--out", "d"},
                                                   {"solve"},
                                                   {"plot"},
+                                                  {"render", "out"},
+                                                  {"render", "out", "--out", "a.gif"},
+                                                  {"render", "out", "--out", "a.png", "--size", "100"},
+                                                  {"render", "out", "--out", "a.png", "--from", "1,2"},
+                                                  {"render", "out", "--out", "a.png", "--frame", "1", "--sheet", "3"},
                                                   {"bench"},
                                                   {"bench", "flatness", "--k-stretch", "61"},
                                                   {"bench", "scale", "--nodes", "-4"},
