@@ -54,6 +54,7 @@ class PictureOfAResult : public ::testing::Test {
   static fs::path folder() { return fs::temp_directory_path() / ("taut_picture_" + std::to_string(::getpid())); }
 
   Image draw(int frame, PictureOptions options = {}) const {
+    options.samples = 4;
     options.width = 160;
     options.height = 120;
     const std::vector<int> frames{0, 1, 2, 3, 4};
