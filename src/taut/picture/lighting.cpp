@@ -16,8 +16,8 @@ constexpr float shoulder = 0.8F;
 // Linear radiance; together a white surface facing the key light gives back about 1.3, which is rolled off. The key light is about twice the
 // sky, so that folds show.
 const Vec3f key_light(0.88F, 0.845F, 0.785F);
-const Vec3f sky_zenith(0.39F, 0.42F, 0.47F);
-const Vec3f sky_horizon(0.455F, 0.445F, 0.43F);
+const Vec3f sky_zenith(0.395F, 0.425F, 0.475F);
+const Vec3f sky_horizon(0.45F, 0.44F, 0.43F);
 const Vec3f below_without_ground(0.28F, 0.275F, 0.265F);
 constexpr float blocked_light = 0.11F;       // from whatever blocks the sky
 constexpr float blocked_own_colour = 0.30F;  // what blocks is mostly the cloth itself
