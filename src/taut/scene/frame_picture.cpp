@@ -7,7 +7,6 @@
 
 #include "taut/base/error.h"
 #include "taut/picture/contact_sheet.h"
-#include "taut/scene/solid_shapes.h"
 
 namespace taut {
 
@@ -18,8 +17,9 @@ constexpr int most_frames_looked_at = 24;
 // Of these colours solids take one after the other.
 const Colour solid_colours[] = {Colour(0.80, 0.78, 0.74), Colour(0.62, 0.68, 0.62), Colour(0.74, 0.63, 0.60), Colour(0.62, 0.64, 0.72)};
 
-bool is_level_plane(const Solid& solid) {
-  return solid.shape == SolidShape::plane && !moves(solid) && (solid.pose(0.0).rotation * Vec3::UnitZ()).z() > 1.0 - 1e-9;
+bool is_level_plane(const SolidShapes& solids, std::size_t k) {
+  const Solid& solid = solids.solid(k);
+  return solid.shape == SolidShape::plane && !solids.moves(k) && (solid.pose(0.0).rotation * Vec3::UnitZ()).z() > 1.0 - 1e-9;
 }
 
 BoundingBox box_of(std::span<const Vec3> points) {
@@ -31,13 +31,13 @@ BoundingBox box_of(std::span<const Vec3> points) {
 // Points of the solids that belong into the picture: those of no more than this size, and near, both measured by the extent of the cloths.
 constexpr double largest_solid = 1.6, farthest_solid = 0.6;
 
-void add_solids_in_view(const Scene& scene, std::span<const double> times, std::vector<Vec3>& points) {
+void add_solids_in_view(const SolidShapes& solids, std::span<const double> times, std::vector<Vec3>& points) {
   const BoundingBox cloths = box_of(points);
   const double size = cloths.diagonal().norm();
-  for (const Solid& solid : scene.solids) {
-    if (solid.shape == SolidShape::plane) continue;
-    for (const double time : moves(solid) ? times : times.first(1)) {
-      const std::vector<Vec3> mesh = mesh_of(solid, time, 24).mesh.positions;
+  for (std::size_t k = 0; k < solids.size(); ++k) {
+    if (solids.solid(k).shape == SolidShape::plane) continue;
+    for (const double time : solids.moves(k) ? times : times.first(1)) {
+      const std::vector<Vec3> mesh = solids.at(k, time).mesh.positions;
       const BoundingBox box = box_of(mesh);
       if (box.diagonal().norm() <= largest_solid * size &&
           cloths.exteriorDistance(box.center()) <= farthest_solid * cloths.sizes().maxCoeff())
@@ -71,9 +71,20 @@ Surface cloth_surface(const ClothModel& cloth, const ClothPart& part, std::span<
 
 }  // namespace
 
+Image draw_scene(const ClothModel& cloth, std::span<const Vec3> x, const SolidShapes& solids, double time, const Camera& camera,
+                 const RenderOptions& options, Pattern pattern, Index without_solid) {
+  std::vector<SolidMesh> meshes;
+  for (std::size_t k = 0; k < solids.size(); ++k)
+    if (static_cast<Index>(k) != without_solid) meshes.push_back(solids.at(k, time));
+  std::vector<Surface> surfaces;
+  for (std::size_t k = 0; k < meshes.size(); ++k) surfaces.push_back(solid_surface(meshes[k], solid_colours[k % std::size(solid_colours)]));
+  for (const ClothPart& part : cloth.parts()) surfaces.push_back(cloth_surface(cloth, part, x, pattern));
+  return render(surfaces, camera, options);
+}
+
 FramePictures::FramePictures(const Scene& scene, const ClothModel& cloth, const ResultsFolder& results, std::span<const int> frames,
                              const PictureOptions& options)
-    : scene_(scene), cloth_(cloth), results_(results), options_(options) {
+    : scene_(scene), solids_(scene), cloth_(cloth), results_(results), options_(options) {
   if (frames.empty()) throw InputError({results.folder().string()}, "holds no frames; run a scene into it first");
   std::vector<Vec3> points;
   std::vector<double> times;
@@ -82,7 +93,7 @@ FramePictures::FramePictures(const Scene& scene, const ClothModel& cloth, const 
     points.insert(points.end(), x.begin(), x.end());
     times.push_back(time_of(frames[static_cast<std::size_t>(k)]));
   }
-  add_solids_in_view(scene, times, points);
+  add_solids_in_view(SolidShapes(scene, 24), times, points);
   render_.width = options.width;
   render_.height = options.height;
   render_.samples = options.samples;
@@ -108,11 +119,11 @@ void FramePictures::look_at(const std::vector<Vec3>& points) {
 
 void FramePictures::place_ground(const std::vector<Vec3>& points) {
   const BoundingBox box = box_of(points);
-  for (std::size_t k = 0; k < scene_.solids.size() && plane_drawn_as_ground_ < 0; ++k)
-    if (is_level_plane(scene_.solids[k])) plane_drawn_as_ground_ = static_cast<Index>(k);
+  for (std::size_t k = 0; k < solids_.size() && plane_drawn_as_ground_ < 0; ++k)
+    if (is_level_plane(solids_, k)) plane_drawn_as_ground_ = static_cast<Index>(k);
   const double size = box.sizes().maxCoeff(), lowest = box.min().z();
   if (plane_drawn_as_ground_ >= 0)
-    render_.ground = scene_.solids[static_cast<std::size_t>(plane_drawn_as_ground_)].pose(0.0).translation.z();
+    render_.ground = solids_.solid(static_cast<std::size_t>(plane_drawn_as_ground_)).pose(0.0).translation.z();
   else if (lowest >= 0.0 && lowest <= size)
     render_.ground = 0.0;
   else
@@ -123,14 +134,7 @@ Image FramePictures::draw(int frame) const {
   const std::vector<Vec3> x = results_.read_frame(frame);
   if (static_cast<Index>(x.size()) != cloth_.nodes())
     throw InputError({results_.frame_file(frame).string()}, fmt::format("has {} nodes, the scene has {}", x.size(), cloth_.nodes()));
-  std::vector<SolidMesh> solids;
-  std::vector<Surface> surfaces;
-  for (const Solid& solid : scene_.solids) solids.push_back(mesh_of(solid, time_of(frame)));
-  for (std::size_t k = 0; k < solids.size(); ++k)
-    if (static_cast<Index>(k) != plane_drawn_as_ground_)
-      surfaces.push_back(solid_surface(solids[k], solid_colours[k % std::size(solid_colours)]));
-  for (const ClothPart& part : cloth_.parts()) surfaces.push_back(cloth_surface(cloth_, part, x, options_.pattern));
-  return render(surfaces, camera_, render_);
+  return draw_scene(cloth_, x, solids_, time_of(frame), camera_, render_, options_.pattern, plane_drawn_as_ground_);
 }
 
 std::vector<int> spread_frames(int last, int count) {

@@ -10,6 +10,7 @@
 
 #include "taut/picture/render.h"
 #include "taut/scene/results.h"
+#include "taut/scene/solid_shapes.h"
 
 namespace taut {
 
@@ -21,6 +22,11 @@ struct PictureOptions {
   Pattern pattern = Pattern::grid;  // from (u, v); cloths without them have none
   bool ground = true;
 };
+
+// One picture: the cloths with their nodes at `x`, the solids at `time` (s). `options` has size, samples and ground; a solid
+// `without_solid` is left out (a plane that is the ground).
+Image draw_scene(const ClothModel& cloth, std::span<const Vec3> x, const SolidShapes& solids, double time, const Camera& camera,
+                 const RenderOptions& options, Pattern pattern = Pattern::grid, Index without_solid = -1);
 
 class FramePictures {
  public:
@@ -37,6 +43,7 @@ class FramePictures {
   void place_ground(const std::vector<Vec3>& points);
 
   const Scene& scene_;
+  SolidShapes solids_;
   const ClothModel& cloth_;
   const ResultsFolder& results_;
   PictureOptions options_;
