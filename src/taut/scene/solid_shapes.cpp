@@ -15,26 +15,30 @@ Isometry isometry(const Pose& pose) {
 
 }  // namespace
 
-SolidMesh mesh_of(const Solid& solid, double time, int segments) {
-  constexpr double plane_radius = 3.0;
-  const Isometry pose = isometry(solid.pose(time));
-  switch (solid.shape) {
-    case SolidShape::sphere:
-      return make_sphere_mesh(solid.radius, pose, segments);
-    case SolidShape::plane:
-      return make_disc_mesh(plane_radius, pose, segments);
-    case SolidShape::cylinder:
-      return make_cylinder_mesh(solid.radius, solid.height, pose, segments);
-    case SolidShape::box:
-      return make_box_mesh(solid.size, pose);
-  }
-  return {};
+std::string SolidShapes::name(std::size_t k) const { return solid(k).name.empty() ? "solid_" + std::to_string(k) : solid(k).name; }
+
+bool SolidShapes::moves(std::size_t k) const {
+  const Solid& s = solid(k);
+  if (s.key_frames.empty()) return !s.velocity.isZero(0) || !s.angular_velocity.isZero(0);
+  return std::any_of(s.key_frames.begin(), s.key_frames.end(),
+                     [&](const KeyFrame& key) { return !(key.pose == s.key_frames.front().pose); });
 }
 
-bool moves(const Solid& solid) {
-  if (solid.key_frames.empty()) return !solid.velocity.isZero(0) || !solid.angular_velocity.isZero(0);
-  return std::any_of(solid.key_frames.begin(), solid.key_frames.end(),
-                     [&](const KeyFrame& key) { return !(key.pose == solid.key_frames.front().pose); });
+SolidMesh SolidShapes::at(std::size_t k, double time) const {
+  constexpr double plane_radius = 3.0;
+  const Solid& s = solid(k);
+  const Isometry pose = isometry(s.pose(time));
+  switch (s.shape) {
+    case SolidShape::sphere:
+      return make_sphere_mesh(s.radius, pose, segments_);
+    case SolidShape::plane:
+      return make_disc_mesh(plane_radius, pose, segments_);
+    case SolidShape::cylinder:
+      return make_cylinder_mesh(s.radius, s.height, pose, segments_);
+    case SolidShape::box:
+      return make_box_mesh(s.size, pose);
+  }
+  return {};
 }
 
 }  // namespace taut

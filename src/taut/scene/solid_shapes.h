@@ -1,16 +1,28 @@
 #pragma once
-// Solids as meshes, for pictures and export.
+// The scene's solids as meshes over time, for pictures and export.
 
-#include "taut/contact/solid.h"
 #include "taut/picture/solid_mesh.h"
+#include "taut/scene/scene.h"
 
 namespace taut {
 
-// Where the solid is at `time` (s). A plane, which has no end, becomes a disc of 3 m radius about its own origin. `segments`: corners
-// around a circle.
-SolidMesh mesh_of(const Solid& solid, double time, int segments = 96);
+class SolidShapes {
+ public:
+  // `segments`: corners around a circle. A plane, which has no end, becomes a disc of 3 m radius about its own origin.
+  explicit SolidShapes(const Scene& scene, int segments = 96) : scene_(scene), segments_(segments) {}
 
-// Is the pose ever another than at time 0?
-bool moves(const Solid& solid);
+  std::size_t size() const { return scene_.solids.size(); }
+  const Solid& solid(std::size_t k) const { return scene_.solids[k]; }
+  // Its name in the scene, or solid_K.
+  std::string name(std::size_t k) const;
+  // Is the shape ever another than at time 0?
+  bool moves(std::size_t k) const;
+  // At this time (s).
+  SolidMesh at(std::size_t k, double time) const;
+
+ private:
+  const Scene& scene_;
+  int segments_;
+};
 
 }  // namespace taut
