@@ -93,6 +93,36 @@ TEST(Intersection, DecidesWithinRoundingAsCgalDoes) {
   EXPECT_LT(met, 18000);
 }
 
+// The same within one plane, where the signs of the projections decide.
+TEST(Intersection, DecidesWithinRoundingInAPlane) {
+  if (!test::judge_available()) GTEST_SKIP() << test::no_judge;
+  std::mt19937 random(14);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  std::uniform_int_distribution<int> units(-2, 2);
+  int met = 0;
+  for (int k = 0; k < 20000; ++k) {
+    const int axis = k % 3;
+    const auto in_plane = [&] {
+      Vec3 x = test::anywhere(random, 1.0);
+      x[axis] = 0.3;
+      return x;
+    };
+    const Vec3 c = in_plane(), d = in_plane(), e = in_plane(), outside = in_plane();
+    // From a point next to a side onwards, along it or away from the middle; so it meets the triangle there or nowhere.
+    const double share = 0.5 + 0.4 * uniform(random);
+    Vec3 a = (1.0 - share) * d + share * e;
+    for (int i = 0; i < 3; ++i)
+      if (i != axis) a[i] += units(random) * 0x1p-53;
+    Vec3 b = k % 2 == 0 ? Vec3(a + (a - c)) : outside;
+    a[axis] = b[axis] = 0.3;
+    const bool expected = test::judge_segment_triangle(a, b, c, d, e);
+    ASSERT_EQ(segment_meets_triangle(a, b, c, d, e).meets, expected) << k;
+    met += expected;
+  }
+  EXPECT_GT(met, 4000);
+  EXPECT_LT(met, 16000);
+}
+
 TEST(Intersection, SurfacesAsJudgedByCgal) {
   if (!test::judge_available()) GTEST_SKIP() << test::no_judge;
   expect_as_judged(make_soup(21, 20, 15, 40, 0.0, 0.0));

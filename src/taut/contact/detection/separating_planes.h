@@ -47,19 +47,21 @@ class SeparatingPlanes {
   // Does a plane across an axis, or between the middles of the two shapes, separate the pair all the time? Settles most pairs. Only for
   // those in range.
   TAUT_ALWAYS_INLINE bool far_apart(double separation) const {
+    // Without branches: which plane does it is anybody's guess.
+    bool apart = false;
+    double n[3];
     for (int i = 0; i < 3; ++i) {
       const double needed = separation + rounding_bound * (largest_[i] + separation) + underflow_bound;
       const Lanes low = start_[i] < end_[i] ? start_[i] : end_[i], high = start_[i] > end_[i] ? start_[i] : end_[i];
-      if (least(low) > needed || -most(high) > needed) return true;
+      apart |= (least(low) > needed) | (-most(high) > needed);
+      n[i] = sum(start_[i] + end_[i]);
     }
-    double n[3];
-    for (int i = 0; i < 3; ++i) n[i] = sum(start_[i] + end_[i]);
     const Lanes at_start = n[0] * start_[0] + n[1] * start_[1] + n[2] * start_[2];
     const Lanes at_end = n[0] * end_[0] + n[1] * end_[1] + n[2] * end_[2];
+    const Lanes low = at_start < at_end ? at_start : at_end;
     const double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
     const double needed = separation * length + rounding_bound * (size(n) + separation * length) + underflow_bound;
-    const Lanes low = at_start < at_end ? at_start : at_end;
-    return least(low) > needed;
+    return apart | (least(low) > needed);
   }
 
   // The last time s in [r, 1] such that the plane with normal n is seen to separate the pair throughout [r, s]; -1 if it does not even at
