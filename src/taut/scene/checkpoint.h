@@ -1,12 +1,13 @@
 #pragma once
 // Everything needed to go on with a simulation to the same bits, as one binary file (little-endian):
 //
-//   "TAUTCKP2", then the scene as TOML (length, bytes), steps done, frame, time, has_previous, the arrays x, v, x_prev, v_prev, last (length, doubles),
-//   the contacts, the solver's memory, and a checksum (FNV-1a, 64 bits) of all before it
+//   "TAUTCKP3", then the scene as TOML (length, bytes), steps done, frame, time, has_previous, the arrays x, v, x_prev, v_prev, last (length, doubles),
+//   the contacts, the nodes of rigid zones, the solver's memory, and a checksum (FNV-1a, 64 bits) of all before it
 
 #include <iosfwd>
 #include <string>
 
+#include "taut/contact/cloth_contact.h"
 #include "taut/contact/solid_contact.h"
 #include "taut/step/state.h"
 
@@ -18,6 +19,7 @@ struct Checkpoint {
   int frame = 0;
   State state;
   ContactState contacts;
+  ZoneState zones;
   std::vector<double> solver_memory;  // ConstrainedSolver::memory
 };
 
