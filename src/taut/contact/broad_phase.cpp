@@ -1,0 +1,91 @@
+#include "taut/contact/broad_phase.h"
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "taut/base/parallel.h"
+#include "taut/contact/detection/box_tree.h"
+#include "taut/contact/detection/tree_query.h"
+
+namespace taut {
+
+namespace {
+
+using detail::Box;
+using detail::BoxTree;
+
+// v rounded down: the double is made smaller by more than the conversion can make it larger.
+float rounded_down(double v) { return static_cast<float>(v - std::abs(v) * 0x1p-23 - 1e-38); }
+float rounded_up(double v) { return -rounded_down(-v); }
+
+Box swept_box(const Vec3& x0, const Vec3& x1, double half_margin) {
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  Box box{{0, 0, 0, 0}, {0, 0, 0, 0}};
+  for (int i = 0; i < 3; ++i) {
+    const double low = std::min(x0[i], x1[i]) - half_margin, high = std::max(x0[i], x1[i]) + half_margin;
+    const bool finite = x0[i] - x0[i] == 0.0 && x1[i] - x1[i] == 0.0;
+    box.low[i] = finite ? rounded_down(low) : -infinity;
+    box.high[i] = finite ? rounded_up(high) : infinity;
+  }
+  return box;
+}
+
+template <class List>
+std::vector<Index> flattened(const List& list) {
+  std::vector<Index> corners;
+  corners.reserve(list.size() * std::tuple_size_v<typename List::value_type>);
+  for (const auto& item : list) corners.insert(corners.end(), item.begin(), item.end());
+  return corners;
+}
+
+std::vector<Index> all_vertices(const CollisionSurface& surface) {
+  std::vector<Index> corners(static_cast<std::size_t>(surface.vertices));
+  for (Index v = 0; v < surface.vertices; ++v) corners[v] = v;
+  return corners;
+}
+
+}  // namespace
+
+struct BroadPhase::Trees {
+  std::vector<Box> boxes;  // of vertices
+  BoxTree vertices, edges, triangles;
+
+  Trees(const CollisionSurface& surface, std::span<const Vec3> positions)
+      : boxes(static_cast<std::size_t>(surface.vertices)),
+        vertices(all_vertices(surface), 1, positions, surface.is_solid),
+        edges(flattened(surface.edges), 2, positions, surface.is_solid),
+        triangles(flattened(surface.triangles), 3, positions, surface.is_solid) {}
+};
+
+BroadPhase::BroadPhase(const CollisionSurface& surface, std::span<const Vec3> positions)
+    : surface_(&surface), trees_(std::make_unique<Trees>(surface, positions)) {}
+BroadPhase::~BroadPhase() = default;
+BroadPhase::BroadPhase(BroadPhase&&) noexcept = default;
+BroadPhase& BroadPhase::operator=(BroadPhase&&) noexcept = default;
+
+void BroadPhase::refit(std::span<const Vec3> x0, std::span<const Vec3> x1, double margin) {
+  Trees& trees = *trees_;
+  parallel_for(surface_->vertices, 4096, [&](Index begin, Index end) {
+    for (Index v = begin; v < end; ++v) trees.boxes[v] = swept_box(x0[v], x1[v], 0.5 * margin);
+  });
+  trees.vertices.refit(trees.boxes);
+  trees.edges.refit(trees.boxes);
+  trees.triangles.refit(trees.boxes);
+}
+
+void BroadPhase::find_vertex_triangle(std::vector<VertexTriangle>& pairs, std::span<const std::uint8_t> moved) const {
+  detail::query(trees_->vertices, trees_->triangles, moved, pairs, [](Index vertex, Index triangle) {
+    return VertexTriangle{vertex, triangle};
+  });
+}
+
+void BroadPhase::find_edge_edge(std::vector<EdgeEdge>& pairs, std::span<const std::uint8_t> moved) const {
+  detail::query(trees_->edges, trees_->edges, moved, pairs, [](Index a, Index b) { return EdgeEdge{std::min(a, b), std::max(a, b)}; });
+}
+
+void BroadPhase::find_edge_triangle(std::vector<EdgeTriangle>& pairs, std::span<const std::uint8_t> moved) const {
+  detail::query(trees_->edges, trees_->triangles, moved, pairs, [](Index edge, Index triangle) { return EdgeTriangle{edge, triangle}; });
+}
+
+}  // namespace taut

@@ -1,0 +1,64 @@
+#pragma once
+// Broad phase: which vertices, edges and triangles of a surface may come near each other in a step.
+//
+//   swept box   of a vertex, an edge or a triangle: the smallest box around where its corners are at x0 and at x1 (m). Straight paths stay
+//   inside margin      m: every pair whose swept boxes are at most `margin` apart along each axis is reported; so every pair that is ever
+//   within `margin`
+//               of each other during the step (the reverse does not hold)
+//
+// Left out: pairs that share a vertex; pairs with both sides on solids; where `moved` is given, pairs without a vertex marked in it.
+// Each remaining pair is reported once. Lists come in an order that depends on the surface and the positions, not on the number of threads.
+//
+// Method: one packed tree of eight children a node for vertices, edges and triangles each, ordered once by halving the positions given to
+// the constructor. Boxes are stored as floats, rounded outwards. refit is O(n) and moves no node; a query takes groups of eight through a
+// tree.
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "taut/contact/collision_surface.h"
+
+namespace taut {
+
+struct VertexTriangle {
+  Index vertex = 0, triangle = 0;
+  auto operator<=>(const VertexTriangle&) const = default;
+};
+struct EdgeEdge {
+  Index first = 0, second = 0;  // first < second
+  auto operator<=>(const EdgeEdge&) const = default;
+};
+struct EdgeTriangle {
+  Index edge = 0, triangle = 0;
+  auto operator<=>(const EdgeTriangle&) const = default;
+};
+
+class BroadPhase {
+ public:
+  // Keeps a reference to the surface, which must outlive it. `positions` (m, one a vertex) decide how the trees are grouped: any will do,
+  // the shape at the start of a simulation does well.
+  BroadPhase(const CollisionSurface& surface, std::span<const Vec3> positions);
+  ~BroadPhase();
+  BroadPhase(BroadPhase&&) noexcept;
+  BroadPhase& operator=(BroadPhase&&) noexcept;
+
+  // Sets all boxes for a step from x0 to x1 (m, one a vertex each; the same span twice for a shape at rest). margin >= 0, m.
+  // A vertex that is not finite gets a box around everything.
+  void refit(std::span<const Vec3> x0, std::span<const Vec3> x1, double margin);
+
+  // Replace `pairs`. moved: empty for all pairs, or one byte a vertex, not 0 where it moved.
+  void find_vertex_triangle(std::vector<VertexTriangle>& pairs, std::span<const std::uint8_t> moved = {}) const;
+  void find_edge_edge(std::vector<EdgeEdge>& pairs, std::span<const std::uint8_t> moved = {}) const;
+  void find_edge_triangle(std::vector<EdgeTriangle>& pairs, std::span<const std::uint8_t> moved = {}) const;
+
+  const CollisionSurface& surface() const { return *surface_; }
+
+ private:
+  struct Trees;
+  const CollisionSurface* surface_;
+  std::unique_ptr<Trees> trees_;
+};
+
+}  // namespace taut

@@ -1,0 +1,147 @@
+#include "taut/contact/detection/box_tree.h"
+
+#include <limits>
+#include <numeric>
+
+#include "taut/base/parallel.h"
+
+namespace taut::detail {
+
+namespace {
+
+constexpr Index refit_grain = 256;  // groups
+
+// Sorts items so that each run of 8^k slots is compact: halves the range, at a multiple of the largest 8^k below its length, across the
+// longest side of the items' centres.
+void order_range(std::span<Index> items, std::span<const Vec3> centre) {
+  const auto count = static_cast<Index>(items.size());
+  if (count <= 8) {
+    std::ranges::sort(items);
+    return;
+  }
+  Index run = 8;
+  while (run * 8 < count) run *= 8;
+  const Index half = (count + run - 1) / run / 2 * run;
+  Vec3 low = centre[items[0]], high = low;
+  for (const Index i : items) {
+    low = low.cwiseMin(centre[i]);
+    high = high.cwiseMax(centre[i]);
+  }
+  Index axis;
+  (high - low).maxCoeff(&axis);
+  std::ranges::nth_element(items, items.begin() + half, [&](Index i, Index j) {
+    const double x = centre[i][axis], y = centre[j][axis];
+    return x < y || (x == y && i < j);
+  });
+  order_range(items.first(half), centre);
+  order_range(items.subspan(half), centre);
+}
+
+}  // namespace
+
+BoxTree::BoxTree(std::vector<Index> corners, int corners_per_item, std::span<const Vec3> positions, std::span<const std::uint8_t> is_solid)
+    : corners_per_item_(corners_per_item) {
+  const std::size_t count = corners.size() / static_cast<std::size_t>(corners_per_item);
+  const auto corner = [&](Index item, int k) { return corners[static_cast<std::size_t>(item) * corners_per_item + k]; };
+  std::vector<Vec3> centre(count, Vec3::Zero());
+  for (Index i = 0; i < static_cast<Index>(count); ++i) {
+    for (int k = 0; k < corners_per_item; ++k) centre[i] += positions[corner(i, k)];
+    if (!centre[i].allFinite()) centre[i].setZero();
+  }
+  order_.resize(count);
+  std::iota(order_.begin(), order_.end(), Index{0});
+  order_range(order_, centre);
+  corners_.reserve(corners.size());
+  for (const Index i : order_)
+    for (int k = 0; k < corners_per_item; ++k) corners_.push_back(corner(i, k));
+
+  BoxGroup empty;
+  for (int i = 0; i < 3; ++i)
+    for (int l = 0; l < 8; ++l) empty.low[i][l] = empty.high[i][l] = std::numeric_limits<float>::quiet_NaN();
+  std::size_t boxes = count;
+  do {
+    boxes = (boxes + 7) / 8;
+    levels_.emplace_back(boxes, empty);
+  } while (boxes > 1);
+  solid_ = masks([&](Index slot) { return is_solid[this->corners(slot)[0]] != 0; }, true);
+}
+
+template <class OfItem>
+LevelMasks BoxTree::masks(const OfItem& of_item, bool all) const {
+  LevelMasks result(levels_.size());
+  for (int level = 0; level < height(); ++level) {
+    auto& here = result[level];
+    here.resize(levels_[level].size());
+    parallel_for(static_cast<Index>(here.size()), refit_grain, [&](Index begin, Index end) {
+      for (Index g = begin; g < end; ++g)
+        for (Index l = 0; l < lanes_used(level, g); ++l) {
+          const Index below = 8 * g + l;
+          bool bit;
+          if (level == 0)
+            bit = of_item(below);
+          else if (all)
+            bit = result[level - 1][below] == (1u << lanes_used(level - 1, below)) - 1;
+          else
+            bit = result[level - 1][below] != 0;
+          if (bit) here[g] = static_cast<std::uint8_t>(here[g] | 1u << l);
+        }
+    });
+  }
+  return result;
+}
+
+LevelMasks BoxTree::any_moved(std::span<const std::uint8_t> moved) const {
+  return masks(
+      [&](Index slot) {
+        for (const Index v : corners(slot))
+          if (moved[v]) return true;
+        return false;
+      },
+      false);
+}
+
+void BoxTree::fit_items(Index g, std::span<const Box> vertices) {
+  BoxGroup& group = levels_[0][g];
+  for (Index l = 0; l < lanes_used(0, g); ++l) {
+    const std::span<const Index> of_item = corners(8 * g + l);
+    Box box = vertices[of_item[0]];
+    for (std::size_t k = 1; k < of_item.size(); ++k) {
+      const Box& other = vertices[of_item[k]];
+      for (int i = 0; i < 4; ++i) {
+        box.low[i] = std::min(box.low[i], other.low[i]);
+        box.high[i] = std::max(box.high[i], other.high[i]);
+      }
+    }
+    for (int i = 0; i < 3; ++i) {
+      group.low[i][l] = box.low[i];
+      group.high[i][l] = box.high[i];
+    }
+  }
+}
+
+void BoxTree::fit_children(int level, Index g) {
+  BoxGroup& group = levels_[level][g];
+  for (Index l = 0; l < lanes_used(level, g); ++l) {
+    const Index below = 8 * g + l;
+    const BoxGroup& child = levels_[level - 1][below];
+    for (int i = 0; i < 3; ++i) {
+      float low = child.low[i][0], high = child.high[i][0];
+      for (Index k = 1; k < lanes_used(level - 1, below); ++k) {
+        low = std::min(low, child.low[i][k]);
+        high = std::max(high, child.high[i][k]);
+      }
+      group.low[i][l] = low;
+      group.high[i][l] = high;
+    }
+  }
+}
+
+void BoxTree::refit(std::span<const Box> vertices) {
+  if (items() == 0) return;
+  for (int level = 0; level < height(); ++level)
+    parallel_for(static_cast<Index>(levels_[level].size()), refit_grain, [&](Index begin, Index end) {
+      for (Index g = begin; g < end; ++g) level == 0 ? fit_items(g, vertices) : fit_children(level, g);
+    });
+}
+
+}  // namespace taut::detail

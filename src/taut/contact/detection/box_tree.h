@@ -1,0 +1,112 @@
+#pragma once
+// A packed tree of axis-aligned boxes with eight children a node, for contact/broad_phase.h. Private to contact.
+//
+//   item      a vertex, an edge or a triangle, given by its corners (1, 2 or 3 vertices)
+//   slot      an item's place in the tree: items that are near each other have near slots; item = order[slot]
+//   group     eight boxes side by side. levels[0][g] holds the items of slots 8g ... 8g+7; levels[L][g] lane l is the box around group 8g+l
+//   of level
+//             L-1. The highest level is one group
+//   empty lane  the last group of a level may be partly empty: its boxes are NaN, which overlap nothing
+//   mask      bit l stands for lane l
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "taut/base/types.h"
+
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
+
+namespace taut::detail {
+
+struct alignas(16) Box {
+  float low[4];  // x, y, z and one unused
+  float high[4];
+};
+
+struct alignas(32) BoxGroup {
+  float low[3][8];
+  float high[3][8];
+};
+
+using Mask = std::uint32_t;  // of eight lanes
+
+// The lanes of `group` that `box` overlaps.
+inline Mask overlapping(const BoxGroup& group, const Box& box) {
+#if defined(__SSE2__)
+  Mask mask = 0;
+  for (int half = 0; half < 2; ++half) {
+    __m128 both = _mm_cmple_ps(_mm_load_ps(group.low[0] + 4 * half), _mm_set1_ps(box.high[0]));
+    both = _mm_and_ps(both, _mm_cmpge_ps(_mm_load_ps(group.high[0] + 4 * half), _mm_set1_ps(box.low[0])));
+    for (int i = 1; i < 3; ++i) {
+      both = _mm_and_ps(both, _mm_cmple_ps(_mm_load_ps(group.low[i] + 4 * half), _mm_set1_ps(box.high[i])));
+      both = _mm_and_ps(both, _mm_cmpge_ps(_mm_load_ps(group.high[i] + 4 * half), _mm_set1_ps(box.low[i])));
+    }
+    mask |= static_cast<Mask>(_mm_movemask_ps(both)) << (4 * half);
+  }
+  return mask;
+#else
+  Mask mask = 0;
+  for (int l = 0; l < 8; ++l) {
+    bool both = true;
+    for (int i = 0; i < 3; ++i) both &= group.low[i][l] <= box.high[i] && group.high[i][l] >= box.low[i];
+    mask |= static_cast<Mask>(both) << l;
+  }
+  return mask;
+#endif
+}
+
+inline Box box_of_lane(const BoxGroup& group, int lane) {
+  return {{group.low[0][lane], group.low[1][lane], group.low[2][lane], 0},
+          {group.high[0][lane], group.high[1][lane], group.high[2][lane], 0}};
+}
+
+// One bit a lane, at every level. A bit above level 0 says something of all (`and`) or of any (`or`) items below it.
+using LevelMasks = std::vector<std::vector<std::uint8_t>>;
+
+class BoxTree {
+ public:
+  // corners: `corners_per_item` vertices an item, one item after the other.
+  BoxTree(std::vector<Index> corners, int corners_per_item, std::span<const Vec3> positions, std::span<const std::uint8_t> is_solid);
+
+  // Boxes of all vertices, from which those of the items are made.
+  void refit(std::span<const Box> vertices);
+
+  // Lanes with an item that has a corner marked in `moved`, one byte a vertex.
+  LevelMasks any_moved(std::span<const std::uint8_t> moved) const;
+
+  Index items() const { return static_cast<Index>(order_.size()); }
+  int height() const { return static_cast<int>(levels_.size()); }
+  Index groups() const { return static_cast<Index>(levels_[0].size()); }
+  const BoxGroup& group(int level, Index g) const { return levels_[static_cast<std::size_t>(level)][static_cast<std::size_t>(g)]; }
+  // Lanes with nothing but solids.
+  Mask solid(int level, Index g) const { return solid_[static_cast<std::size_t>(level)][static_cast<std::size_t>(g)]; }
+  Index item(Index slot) const { return order_[static_cast<std::size_t>(slot)]; }
+  // Of the item in a slot.
+  std::span<const Index> corners(Index slot) const {
+    return {corners_.data() + static_cast<std::size_t>(slot) * static_cast<std::size_t>(corners_per_item_),
+            static_cast<std::size_t>(corners_per_item_)};
+  }
+  Index lanes_used(int level, Index g) const {
+    const Index count = level == 0 ? items() : static_cast<Index>(levels_[static_cast<std::size_t>(level) - 1].size());
+    return std::min<Index>(8, count - 8 * g);
+  }
+
+ private:
+  template <class OfItem>
+  LevelMasks masks(const OfItem& of_item, bool all) const;
+  void fit_items(Index g, std::span<const Box> vertices);
+  void fit_children(int level, Index g);
+
+  int corners_per_item_;
+  std::vector<Index> order_;    // slot -> item
+  std::vector<Index> corners_;  // by slot
+  std::vector<std::vector<BoxGroup>> levels_;
+  LevelMasks solid_;
+};
+
+}  // namespace taut::detail

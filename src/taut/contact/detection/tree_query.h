@@ -1,0 +1,134 @@
+#pragma once
+// All pairs of overlapping items of two box trees, or of one with itself, for contact/broad_phase.h. Private to contact.
+//
+// Each group of eight items of the first tree descends through the second. Chunks of such groups write lists of their own, which are joined
+// in order, so the result does not depend on the number of threads.
+
+#include <bit>
+#include <numeric>
+
+#include "taut/base/parallel.h"
+#include "taut/contact/detection/box_tree.h"
+
+namespace taut::detail {
+
+// Neighbouring chunks cost alike (crumpled here, flat there), so threads, which get runs of them, take them in a stride across the whole
+// surface.
+inline Index strided(Index k, Index count) {
+  Index stride = static_cast<Index>(0.618 * count) | 1;
+  while (std::gcd(stride, count) != 1) stride += 2;
+  return static_cast<Index>(static_cast<Offset>(k) * stride % count);
+}
+
+template <class Pair, class MakePair>
+class TreeQuery {
+ public:
+  TreeQuery(const BoxTree& first, const BoxTree& second, std::span<const std::uint8_t> moved, const MakePair& make_pair)
+      : first_(first), second_(second), itself_(&first == &second), make_pair_(make_pair) {
+    if (moved.empty()) return;
+    moved_second_ = second.any_moved(moved);
+    moved_first_ = itself_ ? moved_second_ : first.any_moved(moved);
+  }
+
+  // Pairs of the items in group q of the first tree.
+  void run(Index q, std::vector<Pair>& pairs) const {
+    const Index lanes = first_.lanes_used(0, q);
+    const Mask all = (1u << lanes) - 1, solid = first_.solid(0, q);
+    const bool all_solid = solid == all;
+    const bool none_moved = restricted() && moved_first_[0][q] == 0;
+    const Box around = first_.height() > 1 ? box_of_lane(first_.group(1, q / 8), q % 8) : around_group(q, lanes);
+    struct Visit {
+      int level;
+      Index group;
+    };
+    Visit stack[8 * 12];  // 8^11 groups are more than an Index counts
+    int depth = 0;
+    stack[depth++] = {second_.height() - 1, 0};
+    while (depth > 0) {
+      const Visit visit = stack[--depth];
+      if (visit.level == 0) {
+        meet(q, visit.group, pairs);
+        continue;
+      }
+      Mask mask = overlapping(second_.group(visit.level, visit.group), around);
+      if (all_solid) mask &= ~second_.solid(visit.level, visit.group);
+      if (none_moved) mask &= moved_second_[visit.level][visit.group];
+      if (itself_) {
+        // Groups before q met q on their own way.
+        const Index from = (q >> (3 * (visit.level - 1))) - 8 * visit.group;
+        if (from > 0) mask &= from < 8 ? ~0u << from : 0u;
+      }
+      // The last pushed is visited first: so from the highest lane down.
+      for (; mask != 0; mask &= ~(1u << (31 - std::countl_zero(mask))))
+        stack[depth++] = {visit.level - 1, 8 * visit.group + 31 - std::countl_zero(mask)};
+    }
+  }
+
+ private:
+  bool restricted() const { return !moved_second_.empty(); }
+
+  Box around_group(Index q, Index lanes) const {
+    Box box = box_of_lane(first_.group(0, q), 0);
+    for (Index l = 1; l < lanes; ++l) {
+      const Box other = box_of_lane(first_.group(0, q), l);
+      for (int i = 0; i < 3; ++i) {
+        box.low[i] = std::min(box.low[i], other.low[i]);
+        box.high[i] = std::max(box.high[i], other.high[i]);
+      }
+    }
+    return box;
+  }
+
+  void meet(Index q, Index g, std::vector<Pair>& pairs) const {
+    const BoxGroup& mine = first_.group(0, q);
+    const BoxGroup& theirs = second_.group(0, g);
+    for (Index l = 0; l < first_.lanes_used(0, q); ++l) {
+      Mask mask = overlapping(theirs, box_of_lane(mine, l));
+      if (itself_ && q == g) mask &= ~1u << l;
+      if (first_.solid(0, q) >> l & 1) mask &= ~second_.solid(0, g);
+      if (restricted() && !(moved_first_[0][q] >> l & 1)) mask &= moved_second_[0][g];
+      const Index slot = 8 * q + l;
+      for (; mask != 0; mask &= mask - 1) {
+        const Index other = 8 * g + std::countr_zero(mask);
+        if (!share_corner(first_.corners(slot), second_.corners(other)))
+          pairs.push_back(make_pair_(first_.item(slot), second_.item(other)));
+      }
+    }
+  }
+
+  static bool share_corner(std::span<const Index> a, std::span<const Index> b) {
+    bool shared = false;
+    for (const Index i : a)
+      for (const Index j : b) shared |= i == j;
+    return shared;
+  }
+
+  const BoxTree& first_;
+  const BoxTree& second_;
+  bool itself_;
+  const MakePair& make_pair_;
+  LevelMasks moved_first_, moved_second_;
+};
+
+template <class Pair, class MakePair>
+void query(const BoxTree& first, const BoxTree& second, std::span<const std::uint8_t> moved, std::vector<Pair>& pairs,
+           const MakePair& make_pair) {
+  pairs.clear();
+  if (first.items() == 0 || second.items() == 0) return;
+  constexpr Index groups_per_chunk = 16;
+  const TreeQuery<Pair, MakePair> tree_query(first, second, moved, make_pair);
+  const Index chunks = (first.groups() + groups_per_chunk - 1) / groups_per_chunk;
+  std::vector<std::vector<Pair>> found(static_cast<std::size_t>(chunks));
+  parallel_for(chunks, 1, [&](Index begin, Index end) {
+    for (Index k = begin; k < end; ++k) {
+      const Index c = strided(k, chunks);
+      for (Index q = c * groups_per_chunk; q < std::min(first.groups(), (c + 1) * groups_per_chunk); ++q) tree_query.run(q, found[c]);
+    }
+  });
+  std::size_t total = 0;
+  for (const auto& list : found) total += list.size();
+  pairs.reserve(total);
+  for (const auto& list : found) pairs.insert(pairs.end(), list.begin(), list.end());
+}
+
+}  // namespace taut::detail
