@@ -41,8 +41,8 @@ struct ClothContact::Work {
   Trouble trouble;
   std::vector<std::uint8_t> moved, ever_moved;  // since the last search; since the start
 
-  Work(const ClothContactStep& step, std::span<Vec3> x1, std::span<const double> mass)
-      : step(step), x1(x1), zones(mass, step.held), moved(x1.size()), ever_moved(x1.size()) {}
+  Work(const ClothContactStep& the_step, std::span<Vec3> end, std::span<const double> mass)
+      : step(the_step), x1(end), zones(mass, the_step.held), moved(end.size()), ever_moved(end.size()) {}
 
   void forget_moved() { std::ranges::fill(moved, std::uint8_t{0}); }
   void remember_moved() {
@@ -101,8 +101,11 @@ void ClothContact::repel(Work& work) {
   work.rows.reserve(near.size());
   for (const NearPair& pair : near) {
     work.rows.push_back(repulsion_row(pair, thickness_of(pair.pair), friction_of(pair.pair)));
-    weigh(work.rows.back(), work.step.inverse_mass);
   }
+  if (work.step.solids)
+    for (const auto& [node, obstacle] : work.step.solids->touched(work.x1))
+      if (!work.step.held[node]) work.rows.push_back(obstacle_row(node, obstacle, work.step.x0[node]));
+  for (ContactRow& row : work.rows) weigh(row, work.step.inverse_mass);
   counts_.near_ms += timer.lap();
   satisfy_rows(work.rows, work.step.inverse_mass, work.step.x0, work.x1, work.moved, repulsion_iterations,
                tolerance_share * options_.thickness);

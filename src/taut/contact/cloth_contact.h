@@ -39,7 +39,7 @@ struct CollisionBody {
 struct ClothContactStep {
   double h = 0.0;                      // s
   std::span<const Vec3> x0;            // one each a vertex of the surface, like all that follows
-  std::span<const Mat3> inverse_mass;  // 1/kg (contact_row.h)
+  std::span<const double> inverse_mass;  // 1/kg, 0 for what is held
   std::span<const std::uint8_t> held;  // not 0: ends where x1 says
   const SolidContact* solids = nullptr;  // analytic ones, begun for this step; its nodes are the first vertices
 };

@@ -10,40 +10,28 @@ namespace {
 // Impulses that a row has not needed for this share of its own are not worth a node's being checked again.
 constexpr double negligible = 1e-3;
 
-Mat3 mobility(const ContactRow& row, std::span<const Mat3> inverse_mass) {
-  Mat3 sum = Mat3::Zero();
-  for (std::size_t k = 0; k < 4 && row.node[k] >= 0; ++k) sum += row.weight[k] * row.weight[k] * inverse_mass[row.node[k]];
-  return sum;
-}
-
-void push(const ContactRow& row, const Vec3& impulse, std::span<const Mat3> inverse_mass, std::span<Vec3> x1, std::span<std::uint8_t> moved) {
+void push(const ContactRow& row, const Vec3& impulse, std::span<const double> inverse_mass, std::span<Vec3> x1, std::span<std::uint8_t> moved) {
   for (std::size_t k = 0; k < 4 && row.node[k] >= 0; ++k) {
     const Index i = row.node[k];
-    const Vec3 change = row.weight[k] * (inverse_mass[i] * impulse);
-    if (change.isZero(0.0)) continue;
-    x1[i] += change;
+    const double share = row.weight[k] * inverse_mass[i];
+    if (share == 0.0) continue;
+    x1[i] += share * impulse;
     moved[i] = 1;
   }
 }
 
 // What friction adds to bring the tangential motion to that of the other side, within Coulomb's cone.
-Vec3 friction_step(const ContactRow& row, std::span<const Mat3> inverse_mass, std::span<const Vec3> x0, std::span<const Vec3> x1) {
+Vec3 friction_step(const ContactRow& row, std::span<const Vec3> x0, std::span<const Vec3> x1) {
   const Vec3 motion = separation(row, x1) - separation(row, x0) - row.carried;
   const Vec3 slip = motion - row.normal.dot(motion) * row.normal;
-  const double length = slip.norm();
-  Vec3 wanted = row.tangential;
-  if (length > 0.0) {
-    const Vec3 direction = slip / length;
-    const double mobile = direction.dot(mobility(row, inverse_mass) * direction);
-    if (mobile > 0.0) wanted -= slip / mobile;
-  }
+  Vec3 wanted = row.tangential - slip / row.inverse_mass;
   const double limit = row.friction * row.lambda, size = wanted.norm();
   if (size > limit) wanted *= limit / size;
   return wanted - row.tangential;
 }
 
 // Returns how far the row's points moved against one another.
-double satisfy(ContactRow& row, std::span<const Mat3> inverse_mass, std::span<const Vec3> x0, std::span<Vec3> x1, std::span<std::uint8_t> moved,
+double satisfy(ContactRow& row, std::span<const double> inverse_mass, std::span<const Vec3> x0, std::span<Vec3> x1, std::span<std::uint8_t> moved,
                double tolerance) {
   const double missing = row.target - row.normal.dot(separation(row, x1));
   const double lambda = std::max(0.0, row.lambda + missing / row.inverse_mass);
@@ -58,7 +46,7 @@ double satisfy(ContactRow& row, std::span<const Mat3> inverse_mass, std::span<co
   }
   if (motion > 0.0) push(row, impulse, inverse_mass, x1, moved);
   if (row.friction == 0.0) return motion;
-  const Vec3 tangential = friction_step(row, inverse_mass, x0, x1);
+  const Vec3 tangential = friction_step(row, x0, x1);
   const double sideways = tangential.norm() * row.inverse_mass;
   if (sideways <= negligible * tolerance) return motion;
   row.tangential += tangential;
@@ -74,11 +62,12 @@ Vec3 separation(const ContactRow& row, std::span<const Vec3> x) {
   return sum;
 }
 
-void weigh(ContactRow& row, std::span<const Mat3> inverse_mass) {
-  row.inverse_mass = row.normal.dot(mobility(row, inverse_mass) * row.normal);
+void weigh(ContactRow& row, std::span<const double> inverse_mass) {
+  row.inverse_mass = 0.0;
+  for (std::size_t k = 0; k < 4 && row.node[k] >= 0; ++k) row.inverse_mass += row.weight[k] * row.weight[k] * inverse_mass[row.node[k]];
 }
 
-void satisfy_rows(std::span<ContactRow> rows, std::span<const Mat3> inverse_mass, std::span<const Vec3> x0, std::span<Vec3> x1,
+void satisfy_rows(std::span<ContactRow> rows, std::span<const double> inverse_mass, std::span<const Vec3> x0, std::span<Vec3> x1,
                   std::span<std::uint8_t> moved, int iterations, double tolerance) {
   for (int k = 0; k < iterations; ++k) {
     double largest = 0.0;

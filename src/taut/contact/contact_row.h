@@ -7,7 +7,8 @@
 //   lambda                             kg m: h times the impulse along n, accumulated, never negative
 //   friction                           kg m: h times the tangential impulse, |friction| <= mu lambda (Coulomb)
 //
-// W_k: inverse mass of node k, 1/kg, a symmetric tensor: S/m where only some directions are free, 0 for what is held.
+// inverse mass of a node: 1/kg; 0 where it is held. Contact with analytic solids is a row of its own, not a direction without mass: a push that
+// is nearly along such a direction would throw the node sideways.
 
 #include <array>
 #include <span>
@@ -24,7 +25,7 @@ struct ContactRow {
   double target = 0.0;
   double friction = 0.0;      // mu
   Vec3 carried = Vec3::Zero();  // m: tangential motion over the step that friction aims at; 0 but on a moving solid
-  double inverse_mass = 0.0;  // nᵀ K n, K = sum_k weight_k² W_k; 0: nothing here can move
+  double inverse_mass = 0.0;  // 1/kg: sum_k weight_k² / m_k; 0: nothing here can move
   double lambda = 0.0;
   Vec3 tangential = Vec3::Zero();
 };
@@ -33,14 +34,14 @@ struct ContactRow {
 Vec3 separation(const ContactRow& row, std::span<const Vec3> x);
 
 // Fills inverse_mass.
-void weigh(ContactRow& row, std::span<const Mat3> inverse_mass);
+void weigh(ContactRow& row, std::span<const double> inverse_mass);
 
 // Meets the rows as well as `iterations` rounds of projected Gauss-Seidel can, in the order of the rows, by impulses that keep momentum:
-// x1_k += weight_k W_k (dlambda n + dtangential). Rows that hold already and have no impulse change nothing. Stops early when no row
+// x1_k += weight_k / m_k (dlambda n + dtangential). Rows that hold already and have no impulse change nothing. Stops early when no row
 // moves its points by more than `tolerance` (m). moved[k] = 1 for nodes that it moved. Source: Moreau's time stepping, solved as in
 // Otaduy, Tamstorf, Steinemann & Gross 2009, "Implicit contact handling for deformable objects"; Bridson et al. 2002 apply each impulse
 // once and never take it back, which in a stack of layers throws the upper ones off.
-void satisfy_rows(std::span<ContactRow> rows, std::span<const Mat3> inverse_mass, std::span<const Vec3> x0, std::span<Vec3> x1,
+void satisfy_rows(std::span<ContactRow> rows, std::span<const double> inverse_mass, std::span<const Vec3> x0, std::span<Vec3> x1,
                   std::span<std::uint8_t> moved, int iterations, double tolerance);
 
 }  // namespace taut

@@ -107,6 +107,8 @@ class SolidContact {
   // Between begin_step and the next: the first solid in which the node would end deeper than the tolerance above, moving from where it
   // started to x_end; null if there is none.
   std::optional<Obstacle> obstacle(Index node, const Vec3& x_end) const;
+  // The planes of all contacts for nodes that end at x_end, by node.
+  std::vector<std::pair<Index, Obstacle>> touched(std::span<const Vec3> x_end) const;
 
   std::span<const Solid> solids() const { return solids_; }
   Index nodes() const { return nodes_; }
@@ -176,6 +178,7 @@ class SolidContact {
   bool add_inside(std::span<const Vec3> x_end);
   bool drop_released();
   void group();
+  Obstacle obstacle(const SolidStep& step, Index node, const Vec3& x_end) const;
   void recall(TouchedNode& touched, std::size_t kept) const;
   double depth_tolerance(const SolidStep& step) const;
   void renew_planes(std::span<const Vec3> x_end);

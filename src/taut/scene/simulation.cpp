@@ -116,7 +116,7 @@ Status Simulation::correct(double h, std::vector<Vec3>& corrected, bool& changed
   const int moved = contact_.move_out(corrected);
   changed = moved > 0;
   if (!surface_contact_) return {};
-  Status status = surface_contact_->correct(h, state_.x, pins_, constraints_, contact_, corrected, changed);
+  Status status = surface_contact_->correct(h, state_.x, pins_, contact_, corrected, changed);
   note_surface_contact(record);
   return status;
 }

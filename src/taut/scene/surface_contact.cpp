@@ -52,19 +52,16 @@ void SurfaceContact::hold_zones(const State& state, double h, ConstraintSet& con
   }
 }
 
-// Pins are infinitely heavy, and so are nodes in the directions that solids hold; but zones of the step before are not.
-void SurfaceContact::weigh_nodes(const ConstraintSet& pins, const ConstraintSet& constraints) {
+void SurfaceContact::weigh_nodes(const ConstraintSet& pins) {
   for (Index i = 0; i < nodes_; ++i) {
     held_[i] = pins.ndof(i) == 0;
-    const bool in_zone = std::ranges::binary_search(kept_.node, i);
-    const Mat3 free = held_[i] ? Mat3(Mat3::Zero()) : in_zone ? Mat3(Mat3::Identity()) : constraints.projection(i);
-    inverse_mass_[i] = free / mass_[i];
+    inverse_mass_[i] = held_[i] ? 0.0 : 1.0 / mass_[i];
   }
 }
 
-Status SurfaceContact::correct(double h, std::span<const Vec3> x0, const ConstraintSet& pins, const ConstraintSet& constraints,
-                               const SolidContact& solids, std::span<Vec3> x_end, bool& changed) {
-  weigh_nodes(pins, constraints);
+Status SurfaceContact::correct(double h, std::span<const Vec3> x0, const ConstraintSet& pins, const SolidContact& solids,
+                               std::span<Vec3> x_end, bool& changed) {
+  weigh_nodes(pins);
   x0_.assign(x0.begin(), x0.end());
   x1_.assign(x_end.begin(), x_end.end());
   const Status status = contact_->resolve({h, x0_, inverse_mass_, held_, &solids}, x1_);

@@ -22,10 +22,8 @@ class SurfaceContact {
 
   void hold_zones(const State& state, double h, ConstraintSet& constraints) const;
 
-  // The step [t, t + h] from x0. pins: what holds nodes whatever happens; constraints: those and solids' and zones' of the last solve. x_end is
-  // changed; true in `changed` if any node was moved.
-  Status correct(double h, std::span<const Vec3> x0, const ConstraintSet& pins, const ConstraintSet& constraints,
-                 const SolidContact& solids, std::span<Vec3> x_end, bool& changed);
+  // The step [t, t + h] from x0. pins: what holds nodes whatever happens. x_end is changed; true in `changed` if any node was moved.
+  Status correct(double h, std::span<const Vec3> x0, const ConstraintSet& pins, const SolidContact& solids, std::span<Vec3> x_end, bool& changed);
   // The corrected step counts: its zones are held in the next.
   void keep();
 
@@ -40,7 +38,7 @@ class SurfaceContact {
   void restore(ZoneState state);
 
  private:
-  void weigh_nodes(const ConstraintSet& pins, const ConstraintSet& constraints);
+  void weigh_nodes(const ConstraintSet& pins);
 
   Vec3 gravity_;
   Index nodes_;
@@ -48,7 +46,7 @@ class SurfaceContact {
   std::unique_ptr<ClothContact> contact_;
   ZoneState kept_;
   std::vector<Vec3> x0_, x1_;
-  std::vector<Mat3> inverse_mass_;
+  std::vector<double> inverse_mass_;
   std::vector<std::uint8_t> held_;
 };
 
