@@ -14,5 +14,6 @@ void add_dump_verb(CLI::App& app, int& exit_code);
 void add_solve_verb(CLI::App& app, int& exit_code);
 void add_export_verb(CLI::App& app, int& exit_code);
 void add_plot_verb(CLI::App& app, int& exit_code);
+void add_ccd_verb(CLI::App& app, int& exit_code);
 
 }  // namespace taut::app

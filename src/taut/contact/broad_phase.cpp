@@ -75,17 +75,21 @@ void BroadPhase::refit(std::span<const Vec3> x0, std::span<const Vec3> x1, doubl
 }
 
 void BroadPhase::find_vertex_triangle(std::vector<VertexTriangle>& pairs, std::span<const std::uint8_t> moved) const {
-  detail::query(trees_->vertices, trees_->triangles, moved, pairs, [](Index vertex, Index triangle) {
+  detail::query<1, 3>(trees_->vertices, trees_->triangles, moved, pairs, [](Index vertex, Index triangle) {
     return VertexTriangle{vertex, triangle};
   });
 }
 
 void BroadPhase::find_edge_edge(std::vector<EdgeEdge>& pairs, std::span<const std::uint8_t> moved) const {
-  detail::query(trees_->edges, trees_->edges, moved, pairs, [](Index a, Index b) { return EdgeEdge{std::min(a, b), std::max(a, b)}; });
+  detail::query<2, 2>(trees_->edges, trees_->edges, moved, pairs, [](Index a, Index b) {
+    return EdgeEdge{std::min(a, b), std::max(a, b)};
+  });
 }
 
 void BroadPhase::find_edge_triangle(std::vector<EdgeTriangle>& pairs, std::span<const std::uint8_t> moved) const {
-  detail::query(trees_->edges, trees_->triangles, moved, pairs, [](Index edge, Index triangle) { return EdgeTriangle{edge, triangle}; });
+  detail::query<2, 3>(trees_->edges, trees_->triangles, moved, pairs, [](Index edge, Index triangle) {
+    return EdgeTriangle{edge, triangle};
+  });
 }
 
 }  // namespace taut

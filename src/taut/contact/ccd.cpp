@@ -36,6 +36,7 @@ Impact walk(const detail::SeparatingPlanes& planes, const Pair& pair, const CcdO
   const double separation = options.minimum_separation;
   if (!planes.in_range()) return {true, 0.0};
   if (planes.boxes_apart(separation)) return {};
+  if (planes.separated_until(planes.between_middles(), 0.0, separation) >= 1.0) return {};
   double reached = 0.0;
   for (int check = 0; check < options.max_checks; ++check) {
     const auto closest = pair.closest(reached);

@@ -62,7 +62,7 @@ BoxTree::BoxTree(std::vector<Index> corners, int corners_per_item, std::span<con
   do {
     boxes = (boxes + 7) / 8;
     levels_.emplace_back(boxes, empty);
-  } while (boxes > 1);
+  } while (boxes > 1 || levels_.size() < 2);
   solid_ = masks([&](Index slot) { return is_solid[this->corners(slot)[0]] != 0; }, true);
 }
 
@@ -93,9 +93,9 @@ LevelMasks BoxTree::masks(const OfItem& of_item, bool all) const {
 LevelMasks BoxTree::any_moved(std::span<const std::uint8_t> moved) const {
   return masks(
       [&](Index slot) {
-        for (const Index v : corners(slot))
-          if (moved[v]) return true;
-        return false;
+        bool any = false;
+        for (int k = 0; k < corners_per_item_; ++k) any |= moved[corners(slot)[k]] != 0;
+        return any;
       },
       false);
 }
@@ -103,9 +103,9 @@ LevelMasks BoxTree::any_moved(std::span<const std::uint8_t> moved) const {
 void BoxTree::fit_items(Index g, std::span<const Box> vertices) {
   BoxGroup& group = levels_[0][g];
   for (Index l = 0; l < lanes_used(0, g); ++l) {
-    const std::span<const Index> of_item = corners(8 * g + l);
+    const Index* of_item = corners(8 * g + l);
     Box box = vertices[of_item[0]];
-    for (std::size_t k = 1; k < of_item.size(); ++k) {
+    for (int k = 1; k < corners_per_item_; ++k) {
       const Box& other = vertices[of_item[k]];
       for (int i = 0; i < 4; ++i) {
         box.low[i] = std::min(box.low[i], other.low[i]);

@@ -5,7 +5,7 @@
 //   slot      an item's place in the tree: items that are near each other have near slots; item = order[slot]
 //   group     eight boxes side by side. levels[0][g] holds the items of slots 8g ... 8g+7; levels[L][g] lane l is the box around group 8g+l
 //   of level
-//             L-1. The highest level is one group
+//             L-1. The highest level is one group; there are at least two levels
 //   empty lane  the last group of a level may be partly empty: its boxes are NaN, which overlap nothing
 //   mask      bit l stands for lane l
 
@@ -87,9 +87,8 @@ class BoxTree {
   Mask solid(int level, Index g) const { return solid_[static_cast<std::size_t>(level)][static_cast<std::size_t>(g)]; }
   Index item(Index slot) const { return order_[static_cast<std::size_t>(slot)]; }
   // Of the item in a slot.
-  std::span<const Index> corners(Index slot) const {
-    return {corners_.data() + static_cast<std::size_t>(slot) * static_cast<std::size_t>(corners_per_item_),
-            static_cast<std::size_t>(corners_per_item_)};
+  const Index* corners(Index slot) const {
+    return corners_.data() + static_cast<std::size_t>(slot) * static_cast<std::size_t>(corners_per_item_);
   }
   Index lanes_used(int level, Index g) const {
     const Index count = level == 0 ? items() : static_cast<Index>(levels_[static_cast<std::size_t>(level) - 1].size());

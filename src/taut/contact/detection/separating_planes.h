@@ -54,6 +54,14 @@ class SeparatingPlanes {
     return false;
   }
 
+  // The direction between the middles of the two shapes, halfway through. For most pairs that are only near each other its plane is enough.
+  Vec3 between_middles() const {
+    Vec3 n;
+    for (int i = 0; i < 3; ++i)
+      n[i] = ((start_[i][0] + start_[i][1]) + (start_[i][2] + start_[i][3])) + ((end_[i][0] + end_[i][1]) + (end_[i][2] + end_[i][3]));
+    return n / std::sqrt(n.squaredNorm());
+  }
+
   // The last time s in [r, 1] such that the plane with normal n is seen to separate the pair throughout [r, s]; -1 if it does not even at
   // r, or if n is not of length 1 to 1e-12.
   double separated_until(const Vec3& n, double r, double separation) const {

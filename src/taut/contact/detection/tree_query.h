@@ -20,7 +20,8 @@ inline Index strided(Index k, Index count) {
   return static_cast<Index>(static_cast<Offset>(k) * stride % count);
 }
 
-template <class Pair, class MakePair>
+// Items of the first tree have `first_corners` corners each, of the second `second_corners`.
+template <int first_corners, int second_corners, class Pair, class MakePair>
 class TreeQuery {
  public:
   TreeQuery(const BoxTree& first, const BoxTree& second, std::span<const std::uint8_t> moved, const MakePair& make_pair)
@@ -32,11 +33,9 @@ class TreeQuery {
 
   // Pairs of the items in group q of the first tree.
   void run(Index q, std::vector<Pair>& pairs) const {
-    const Index lanes = first_.lanes_used(0, q);
-    const Mask all = (1u << lanes) - 1, solid = first_.solid(0, q);
-    const bool all_solid = solid == all;
+    const bool all_solid = first_.solid(1, q / 8) >> (q % 8) & 1;
     const bool none_moved = restricted() && moved_first_[0][q] == 0;
-    const Box around = first_.height() > 1 ? box_of_lane(first_.group(1, q / 8), q % 8) : around_group(q, lanes);
+    const Box around = box_of_lane(first_.group(1, q / 8), q % 8);
     struct Visit {
       int level;
       Index group;
@@ -46,10 +45,6 @@ class TreeQuery {
     stack[depth++] = {second_.height() - 1, 0};
     while (depth > 0) {
       const Visit visit = stack[--depth];
-      if (visit.level == 0) {
-        meet(q, visit.group, pairs);
-        continue;
-      }
       Mask mask = overlapping(second_.group(visit.level, visit.group), around);
       if (all_solid) mask &= ~second_.solid(visit.level, visit.group);
       if (none_moved) mask &= moved_second_[visit.level][visit.group];
@@ -59,47 +54,44 @@ class TreeQuery {
         if (from > 0) mask &= from < 8 ? ~0u << from : 0u;
       }
       // The last pushed is visited first: so from the highest lane down.
-      for (; mask != 0; mask &= ~(1u << (31 - std::countl_zero(mask))))
-        stack[depth++] = {visit.level - 1, 8 * visit.group + 31 - std::countl_zero(mask)};
+      for (Mask left = mask; left != 0;) {
+        const int lane = 31 - std::countl_zero(left);
+        left &= ~(1u << lane);
+        const Index below = 8 * visit.group + lane;
+        if (visit.level > 1)
+          stack[depth++] = {visit.level - 1, below};
+        else
+          meet(q, below, overlapping(first_.group(0, q), box_of_lane(second_.group(1, visit.group), lane)), pairs);
+      }
     }
   }
 
  private:
   bool restricted() const { return !moved_second_.empty(); }
 
-  Box around_group(Index q, Index lanes) const {
-    Box box = box_of_lane(first_.group(0, q), 0);
-    for (Index l = 1; l < lanes; ++l) {
-      const Box other = box_of_lane(first_.group(0, q), l);
-      for (int i = 0; i < 3; ++i) {
-        box.low[i] = std::min(box.low[i], other.low[i]);
-        box.high[i] = std::max(box.high[i], other.high[i]);
-      }
-    }
-    return box;
-  }
-
-  void meet(Index q, Index g, std::vector<Pair>& pairs) const {
+  // Those items in the given lanes of group q with the items of group g of the second tree.
+  void meet(Index q, Index g, Mask lanes, std::vector<Pair>& pairs) const {
     const BoxGroup& mine = first_.group(0, q);
     const BoxGroup& theirs = second_.group(0, g);
-    for (Index l = 0; l < first_.lanes_used(0, q); ++l) {
-      Mask mask = overlapping(theirs, box_of_lane(mine, l));
-      if (itself_ && q == g) mask &= ~1u << l;
-      if (first_.solid(0, q) >> l & 1) mask &= ~second_.solid(0, g);
-      if (restricted() && !(moved_first_[0][q] >> l & 1)) mask &= moved_second_[0][g];
-      const Index slot = 8 * q + l;
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const int lane = std::countr_zero(lanes);
+      Mask mask = overlapping(theirs, box_of_lane(mine, lane));
+      if (itself_ && q == g) mask &= ~1u << lane;
+      if (first_.solid(0, q) >> lane & 1) mask &= ~second_.solid(0, g);
+      if (restricted() && !(moved_first_[0][q] >> lane & 1)) mask &= moved_second_[0][g];
+      const Index slot = 8 * q + lane;
+      const Index* corners = first_.corners(slot);
       for (; mask != 0; mask &= mask - 1) {
         const Index other = 8 * g + std::countr_zero(mask);
-        if (!share_corner(first_.corners(slot), second_.corners(other)))
-          pairs.push_back(make_pair_(first_.item(slot), second_.item(other)));
+        if (!share_corner(corners, second_.corners(other))) pairs.push_back(make_pair_(first_.item(slot), second_.item(other)));
       }
     }
   }
 
-  static bool share_corner(std::span<const Index> a, std::span<const Index> b) {
+  static bool share_corner(const Index* a, const Index* b) {
     bool shared = false;
-    for (const Index i : a)
-      for (const Index j : b) shared |= i == j;
+    for (int i = 0; i < first_corners; ++i)
+      for (int j = 0; j < second_corners; ++j) shared |= a[i] == b[j];
     return shared;
   }
 
@@ -110,13 +102,13 @@ class TreeQuery {
   LevelMasks moved_first_, moved_second_;
 };
 
-template <class Pair, class MakePair>
+template <int first_corners, int second_corners, class Pair, class MakePair>
 void query(const BoxTree& first, const BoxTree& second, std::span<const std::uint8_t> moved, std::vector<Pair>& pairs,
            const MakePair& make_pair) {
   pairs.clear();
   if (first.items() == 0 || second.items() == 0) return;
   constexpr Index groups_per_chunk = 16;
-  const TreeQuery<Pair, MakePair> tree_query(first, second, moved, make_pair);
+  const TreeQuery<first_corners, second_corners, Pair, MakePair> tree_query(first, second, moved, make_pair);
   const Index chunks = (first.groups() + groups_per_chunk - 1) / groups_per_chunk;
   std::vector<std::vector<Pair>> found(static_cast<std::size_t>(chunks));
   parallel_for(chunks, 1, [&](Index begin, Index end) {

@@ -1,0 +1,29 @@
+#pragma once
+// Files of continuous-collision queries, in the form of the data sets of Wang et al. 2021 (contact/ccd.h).
+//
+//   eight rows a query         x y z of its corners: four at t = 0, then the same four at t = 1
+//   a row                      x_num,x_den,y_num,y_den,z_num,z_den[,truth]      x = x_num / x_den, m, rounded to the nearest double where
+//   it is none vertex and triangle        p, a, b, c;     two edges: a, b (the first), c, d (the second) truth                      1 where
+//   the two meet, else 0; the same in all rows of a query, and in all queries or in none
+//
+// Numbers are decimal with any number of digits. Empty lines are passed over. gzip is unpacked.
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "taut/base/types.h"
+
+namespace taut {
+
+struct CcdQuery {
+  std::array<Vec3, 4> start, end;
+  std::optional<bool> truth;
+};
+
+// Throws InputError naming file, line and column for a row with too few or too many columns, what is not a finite number, a denominator of
+// 0, a truth that is neither 0 nor 1 or differs within a query, and rows that are not a multiple of eight or none at all.
+std::vector<CcdQuery> read_ccd_queries(const std::filesystem::path& path);
+
+}  // namespace taut
