@@ -69,6 +69,7 @@ const CollisionBody* ClothContact::solid_of(const CollisionPair& pair) const {
 }
 
 double ClothContact::thickness_of(const CollisionPair& pair) const {
+  if (ignored(pair)) return 0.0;
   const CollisionBody* solid = solid_of(pair);
   return solid && solid->thickness > 0.0 ? solid->thickness : options_.thickness;
 }
@@ -115,7 +116,7 @@ void ClothContact::repel(Work& work) {
 // Collisions of the pairs with a node in `moved` (all, where it is empty), and those nodes' obstacles.
 void ClothContact::find_trouble(Work& work, std::span<const std::uint8_t> moved) {
   work.trouble.pairs = search_.colliding(work.step.x0, work.x1, separation_, moved,
-                                         [&](const CollisionPair& pair) { return work.zones.together(pair.node); });
+                                         [&](const CollisionPair& pair) { return ignored(pair) || work.zones.together(pair.node); });
   work.trouble.obstacles.clear();
   if (!work.step.solids || work.step.solids->solids().empty()) return;
   const Index nodes = work.step.solids->nodes();

@@ -85,6 +85,7 @@ class ClothContact {
 
  private:
   struct Work;
+  bool ignored(const CollisionPair& pair) const { return !options_.self && !solid_of(pair); }
   double thickness_of(const CollisionPair& pair) const;
   double friction_of(const CollisionPair& pair) const;
   const CollisionBody* solid_of(const CollisionPair& pair) const;

@@ -51,6 +51,7 @@ void PairSearch::add_colliding(const std::vector<Pair>& pairs, std::span<const V
     if (skip && skip(pair)) continue;
     CollidingPair hit{pair, found.time, separation};
     const double start = kept_share * closest(pair, x0).distance;
+    if (start == 0.0) continue;  // they meet already, which the scene allows
     if (start < separation) {
       CcdOptions closer = options;
       closer.minimum_separation = hit.separation = start;

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 namespace {
 
 // What a run may leave in its folder; anything else there belongs to somebody.
-constexpr const char* own_names[] = {"scene.toml", "frames", "stats.csv", "summary.json", "checkpoint", "contact_sheet.png", "stats.svg"};
+constexpr const char* own_names[] = {"scene.toml", "frames", "stats.csv", "summary.json", "checkpoint", "contact_sheet.png", "stats.svg", "last_good"};
 
 void refuse_foreign_folder(const fs::path& folder) {
   if (!fs::exists(folder)) return;

@@ -79,7 +79,7 @@ void doubt_core(Doubts& d, const Cloth& cloth, const ClothEstimate& e) {
 }
 
 void doubt_stretch(Doubts& d, const Cloth& cloth, const ClothEstimate& e) {
-  if (cloth.pins.empty() || cloth.from_file) return;
+  if (cloth.pins.empty() || !cloth.is_grid()) return;
   // The topmost spring of a hanging column of n nodes carries all of them.
   const double n = std::max(cloth.grid.nu, cloth.grid.nv);
   const double strain = n * e.node_mass * d.scene.gravity.norm() / (cloth.material.k_stretch * e.spacing);
@@ -96,6 +96,7 @@ void doubt_jitter(Doubts& d, const Cloth& cloth, const ClothEstimate& e) {
 
 void doubt_start(Doubts& d, const Cloth& cloth, const TriangleMesh& shape, const Solid& solid) {
   const Pose pose = solid.pose(0.0);
+  if (solid.shape == SolidShape::mesh) return;  // found as intersections
   std::size_t inside = 0;
   double deepest = 0.0;
   for (const Vec3& x : shape.positions) {

@@ -26,7 +26,7 @@ Simulation::Simulation(Scene scene)
     : scene_(std::move(scene)),
       cloth_(scene_),
       contact_(scene_.solids, cloth_.nodes(), scene_.contact),
-      surface_contact_(scene_.contact.self ? std::make_unique<SurfaceContact>(scene_, cloth_) : nullptr),
+      surface_contact_(SurfaceContact::wanted(scene_) ? std::make_unique<SurfaceContact>(scene_, cloth_) : nullptr),
       stepper_(cloth_.nodes(), cloth_.force_models(), cloth_.external(), scene_.time.integrator, scene_.solver, scene_.time.newton),
       state_(cloth_.start()) {
   // Halved steps keep the core of whole ones, and its symbolic work.
@@ -116,7 +116,7 @@ Status Simulation::correct(double h, std::vector<Vec3>& corrected, bool& changed
   const int moved = contact_.move_out(corrected);
   changed = moved > 0;
   if (!surface_contact_) return {};
-  Status status = surface_contact_->correct(h, state_.x, pins_, contact_, corrected, changed);
+  Status status = surface_contact_->correct(state_.time, h, state_.x, pins_, contact_, corrected, changed);
   note_surface_contact(record);
   return status;
 }
@@ -160,7 +160,7 @@ void Simulation::look_for_intersections(StepRecord& record) {
   const int every = scene_.contact.check_every;
   if (!surface_contact_ || every == 0 || steps_ % every != 0) return;
   Timer timer;
-  record.intersections = static_cast<int>(surface_contact_->intersections(state_.x).size());
+  record.intersections = static_cast<int>(surface_contact_->intersections(state_.time, state_.x).size());
   record.check_ms = timer.milliseconds();
 }
 

@@ -64,7 +64,7 @@ class Simulation {
   const Stepper& stepper() const { return stepper_; }
   const ConstraintSet& constraints() const { return constraints_; }
 
-  // Null where `contact.self` is off.
+  // Null where `contact.self` is off and no solid is a mesh.
   SurfaceContact* surface_contact() { return surface_contact_.get(); }
   const SurfaceContact* surface_contact() const { return surface_contact_.get(); }
 

@@ -10,7 +10,7 @@ namespace taut {
 
 namespace {
 
-CollisionSurface surface_of(const ClothModel& cloth) {
+CollisionSurface surface_of(const ClothModel& cloth, const std::vector<MeshSolid>& solids) {
   std::vector<std::vector<Triangle>> own;
   for (const ClothPart& part : cloth.parts()) {
     const auto all = std::span(cloth.surface().triangles).subspan(part.first_triangle, part.triangle_count);
@@ -20,27 +20,58 @@ CollisionSurface surface_of(const ClothModel& cloth) {
   }
   std::vector<SurfacePart> parts;
   for (std::size_t c = 0; c < own.size(); ++c) parts.push_back({cloth.parts()[c].node_count, own[c], false});
+  for (const MeshSolid& solid : solids) parts.push_back({solid.vertices(), solid.triangles(), true});
   return join_surfaces(parts);
 }
 
-std::vector<CollisionBody> bodies_of(const ClothModel& cloth) {
+std::vector<CollisionBody> bodies_of(const ClothModel& cloth, const std::vector<MeshSolid>& solids) {
   std::vector<CollisionBody> bodies;
   for (const ClothPart& part : cloth.parts()) bodies.push_back({part.name});
+  for (const MeshSolid& solid : solids) bodies.push_back({solid.solid().name, true, solid.solid().thickness, solid.solid().friction});
   return bodies;
 }
 
 }  // namespace
 
 SurfaceContact::SurfaceContact(const Scene& scene, const ClothModel& cloth) : gravity_(scene.gravity), nodes_(cloth.nodes()) {
-  CollisionSurface surface = surface_of(cloth);
+  for (const Solid& solid : scene.solids)
+    if (solid.shape == SolidShape::mesh) solids_.emplace_back(solid, scene.folder);
+  CollisionSurface surface = surface_of(cloth, solids_);
   ContactOptions options = scene.contact;
-  const std::vector<Vec3>& start = cloth.start().x;
+  std::vector<Vec3> start = cloth.start().x;
+  start.resize(static_cast<std::size_t>(surface.vertices));
+  place_solids(0.0, start);
   if (options.thickness == 0.0) options.thickness = default_thickness(surface, start);
   const auto masses = cloth.external().masses();
   mass_.assign(masses.begin(), masses.end());
-  contact_ = std::make_unique<ClothContact>(std::move(surface), bodies_of(cloth), start, mass_, options);
-  inverse_mass_.resize(mass_.size());
-  held_.resize(mass_.size());
+  mass_.resize(start.size(), 0.0);
+  contact_ = std::make_unique<ClothContact>(std::move(surface), bodies_of(cloth, solids_), start, mass_, options);
+  inverse_mass_.resize(mass_.size(), 0.0);
+  held_.resize(mass_.size(), 1);
+  if (!options.allow_intersections) refuse_intersections(cloth.start().x);
+}
+
+bool SurfaceContact::wanted(const Scene& scene) {
+  return scene.contact.self || std::ranges::any_of(scene.solids, [](const Solid& s) { return s.shape == SolidShape::mesh; });
+}
+
+void SurfaceContact::place_solids(double time, std::vector<Vec3>& x) const {
+  std::size_t first = static_cast<std::size_t>(nodes_);
+  for (const MeshSolid& solid : solids_) {
+    const auto count = static_cast<std::size_t>(solid.vertices());
+    solid.positions(time, std::span(x).subspan(first, count));
+    first += count;
+  }
+}
+
+void SurfaceContact::refuse_intersections(std::span<const Vec3> start) {
+  constexpr std::size_t most_named = 5;
+  const std::vector<Intersection> found = intersections(0.0, start);
+  if (found.empty()) return;
+  std::string text = fmt::format("cloth intersects at the start, at {} places:", found.size());
+  for (std::size_t k = 0; k < std::min(found.size(), most_named); ++k) text += "\n  " + describe(found[k]);
+  if (found.size() > most_named) text += fmt::format("\n  and {} more", found.size() - most_named);
+  throw InputError(text + "\nMove them apart, or start as it is with contact.allow_intersections = true; what has passed through may then stay so");
 }
 
 void SurfaceContact::hold_zones(const State& state, double h, ConstraintSet& constraints) const {
@@ -59,11 +90,14 @@ void SurfaceContact::weigh_nodes(const ConstraintSet& pins) {
   }
 }
 
-Status SurfaceContact::correct(double h, std::span<const Vec3> x0, const ConstraintSet& pins, const SolidContact& solids,
-                               std::span<Vec3> x_end, bool& changed) {
+Status SurfaceContact::correct(double t, double h, std::span<const Vec3> x0, const ConstraintSet& pins,
+                               const SolidContact& solids, std::span<Vec3> x_end, bool& changed) {
   weigh_nodes(pins);
   x0_.assign(x0.begin(), x0.end());
   x1_.assign(x_end.begin(), x_end.end());
+  for (auto* x : {&x0_, &x1_}) x->resize(mass_.size());
+  place_solids(t, x0_);
+  place_solids(t + h, x1_);
   const Status status = contact_->resolve({h, x0_, inverse_mass_, held_, &solids}, x1_);
   if (!status.ok()) return status;
   for (Index i = 0; i < nodes_; ++i) {
@@ -93,8 +127,15 @@ void SurfaceContact::restore(ZoneState state) {
   kept_ = std::move(state);
 }
 
-std::vector<Intersection> SurfaceContact::intersections(std::span<const Vec3> x) {
+std::vector<Vec3> SurfaceContact::positions(double time, std::span<const Vec3> x) const {
   std::vector<Vec3> all(x.begin(), x.end());
+  all.resize(mass_.size());
+  place_solids(time, all);
+  return all;
+}
+
+std::vector<Intersection> SurfaceContact::intersections(double time, std::span<const Vec3> x) {
+  const std::vector<Vec3> all = positions(time, x);
   return find_intersections(contact_->search().broad_phase(), all);
 }
 

@@ -13,24 +13,33 @@
 #include "taut/contact/cloth_contact.h"
 #include "taut/contact/intersection.h"
 #include "taut/scene/cloth_model.h"
+#include "taut/scene/mesh_solid.h"
 
 namespace taut {
 
 class SurfaceContact {
  public:
+  // Reads the solids' meshes. Throws InputError as MeshSolid, and when cloth intersects itself or a solid at the start and the scene does not
+  // allow it.
   SurfaceContact(const Scene& scene, const ClothModel& cloth);
+  // Whether the scene needs it: contact.self, or a solid that is a mesh.
+  static bool wanted(const Scene& scene);
 
   void hold_zones(const State& state, double h, ConstraintSet& constraints) const;
 
   // The step [t, t + h] from x0. pins: what holds nodes whatever happens. x_end is changed; true in `changed` if any node was moved.
-  Status correct(double h, std::span<const Vec3> x0, const ConstraintSet& pins, const SolidContact& solids, std::span<Vec3> x_end, bool& changed);
+  Status correct(double t, double h, std::span<const Vec3> x0, const ConstraintSet& pins, const SolidContact& solids, std::span<Vec3> x_end, bool& changed);
   // The corrected step counts: its zones are held in the next.
   void keep();
 
-  std::vector<Intersection> intersections(std::span<const Vec3> x);
+  // All vertices of the surface at this time: the cloths' at x, then the solids'.
+  std::vector<Vec3> positions(double time, std::span<const Vec3> x) const;
+  // At this time, of the cloths at x.
+  std::vector<Intersection> intersections(double time, std::span<const Vec3> x);
   // "cloth 'a', triangle 12, and cloth 'b', triangle 40": where the first of them is.
   std::string describe(const Intersection& intersection) const;
 
+  std::span<const MeshSolid> solids() const { return solids_; }
   const ClothContactCounts& counts() const { return contact_->counts(); }
   const ClothContact& contact() const { return *contact_; }
   const ZoneState& state() const { return kept_; }
@@ -39,9 +48,12 @@ class SurfaceContact {
 
  private:
   void weigh_nodes(const ConstraintSet& pins);
+  void place_solids(double time, std::vector<Vec3>& x) const;
+  void refuse_intersections(std::span<const Vec3> start);
 
   Vec3 gravity_;
   Index nodes_;
+  std::vector<MeshSolid> solids_;
   std::vector<double> mass_;
   std::unique_ptr<ClothContact> contact_;
   ZoneState kept_;
