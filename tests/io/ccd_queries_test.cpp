@@ -54,7 +54,7 @@ TEST(CcdQueries, ReadsCornersAndTruth) {
 TEST(CcdQueries, ComplaintsNameThePlace) {
   expect_complaint("", ":", "no query");
   expect_complaint(rows(12, "1,1,2,1,3,1"), ":12:", "4 rows instead of 8");
-  expect_complaint(rows(2, "1,1,2,1,3,1") + "1,1,x2,1,3,1\n", ":3:5:", "\"x2\"");
+  expect_complaint(rows(2, "1,1,2,1,3,1") + "1,1,x2,1,3,1\n", ":3:5:", "'x2'");
   expect_complaint(rows(2, "1,1,2,1,3,1") + "1,1,2,0,3,1\n", ":3:7:", "denominator of y is 0");
   expect_complaint("1,1,2,1,3\n", ":1:", "denominator of z");
   expect_complaint("1,1,2,1,3,1,0,5\n", ":1:15:", "more than 7");

@@ -21,12 +21,11 @@ float rounded_up(double v) { return -rounded_down(-v); }
 
 Box swept_box(const Vec3& x0, const Vec3& x1, double half_margin) {
   constexpr float infinity = std::numeric_limits<float>::infinity();
-  Box box{{0, 0, 0, 0}, {0, 0, 0, 0}};
+  Box box{{-infinity, -infinity, -infinity, 0}, {infinity, infinity, infinity, 0}};
+  if (!x0.allFinite() || !x1.allFinite()) return box;
   for (int i = 0; i < 3; ++i) {
-    const double low = std::min(x0[i], x1[i]) - half_margin, high = std::max(x0[i], x1[i]) + half_margin;
-    const bool finite = x0[i] - x0[i] == 0.0 && x1[i] - x1[i] == 0.0;
-    box.low[i] = finite ? rounded_down(low) : -infinity;
-    box.high[i] = finite ? rounded_up(high) : infinity;
+    box.low[i] = rounded_down(std::min(x0[i], x1[i]) - half_margin);
+    box.high[i] = rounded_up(std::max(x0[i], x1[i]) + half_margin);
   }
   return box;
 }

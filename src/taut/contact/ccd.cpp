@@ -1,8 +1,10 @@
 #include "taut/contact/ccd.h"
 
 #include <Eigen/Geometry>
+#include <array>
 
 #include "taut/base/parallel.h"
+#include "taut/base/simd.h"
 #include "taut/contact/detection/separating_planes.h"
 #include "taut/contact/proximity.h"
 
@@ -10,12 +12,17 @@ namespace taut {
 
 namespace {
 
+using detail::SeparatingPlanes;
+using Corners = const Vec3* [4];
+
 Vec3 mean(const Vec3& start, const Vec3& end, double t) { return (1.0 - t) * start + t * end; }
 
-// What the walk needs of a pair: its closest points at a time, and other normals worth a try when theirs fails for rounding.
+// What the walk needs of a pair: its closest points at a time, and a normal worth a try when theirs fails for rounding.
 struct MovingPointTriangle {
   Vec3 ap[2], ab[2], ac[2];
 
+  MovingPointTriangle(const Corners& x0, const Corners& x1)
+      : ap{*x0[0] - *x0[1], *x1[0] - *x1[1]}, ab{*x0[2] - *x0[1], *x1[2] - *x1[1]}, ac{*x0[3] - *x0[1], *x1[3] - *x1[1]} {}
   PointTriangleProximity closest(double t) const {
     return closest_point_triangle(mean(ap[0], ap[1], t), mean(ab[0], ab[1], t), mean(ac[0], ac[1], t));
   }
@@ -25,18 +32,18 @@ struct MovingPointTriangle {
 struct MovingEdges {
   Vec3 ca[2], ab[2], cd[2];
 
+  MovingEdges(const Corners& x0, const Corners& x1)
+      : ca{*x0[0] - *x0[2], *x1[0] - *x1[2]}, ab{*x0[1] - *x0[0], *x1[1] - *x1[0]}, cd{*x0[3] - *x0[2], *x1[3] - *x1[2]} {}
   EdgeEdgeProximity closest(double t) const {
     return closest_edge_edge(mean(ca[0], ca[1], t), mean(ab[0], ab[1], t), mean(cd[0], cd[1], t));
   }
   Vec3 cross(double t) const { return mean(ab[0], ab[1], t).cross(mean(cd[0], cd[1], t)); }
 };
 
+// For pairs in range that are not far apart.
 template <class Pair>
-Impact walk(const detail::SeparatingPlanes& planes, const Pair& pair, const CcdOptions& options) {
+Impact walk(const SeparatingPlanes& planes, const Pair& pair, const CcdOptions& options) {
   const double separation = options.minimum_separation;
-  if (!planes.in_range()) return {true, 0.0};
-  if (planes.boxes_apart(separation)) return {};
-  if (planes.separated_until(planes.between_middles(), 0.0, separation) >= 1.0) return {};
   double reached = 0.0;
   for (int check = 0; check < options.max_checks; ++check) {
     const auto closest = pair.closest(reached);
@@ -54,35 +61,70 @@ Impact walk(const detail::SeparatingPlanes& planes, const Pair& pair, const CcdO
   return {true, reached};
 }
 
+template <class Kind, class Pair>
+Impact impact_of(const Corners& x0, const Corners& x1, const CcdOptions& options) {
+  const SeparatingPlanes planes(Kind{}, x0, x1);
+  if (!planes.in_range()) return {true, 0.0};
+  if (planes.far_apart(options.minimum_separation)) return {};
+  return walk(planes, Pair(x0, x1), options);
+}
+
 }  // namespace
 
 Impact vertex_triangle_impact(const Vec3& p0, const Vec3& a0, const Vec3& b0, const Vec3& c0, const Vec3& p1, const Vec3& a1,
                               const Vec3& b1, const Vec3& c1, const CcdOptions& options) {
-  const Vec3 start[4] = {p0 - a0, p0 - b0, p0 - c0, p0 - c0}, end[4] = {p1 - a1, p1 - b1, p1 - c1, p1 - c1};
-  const MovingPointTriangle pair{{start[0], end[0]}, {b0 - a0, b1 - a1}, {c0 - a0, c1 - a1}};
-  return walk(detail::SeparatingPlanes(start, end), pair, options);
+  return impact_of<SeparatingPlanes::VertexTriangle, MovingPointTriangle>({&p0, &a0, &b0, &c0}, {&p1, &a1, &b1, &c1}, options);
 }
 
 Impact edge_edge_impact(const Vec3& a0, const Vec3& b0, const Vec3& c0, const Vec3& d0, const Vec3& a1, const Vec3& b1, const Vec3& c1,
                         const Vec3& d1, const CcdOptions& options) {
-  const Vec3 start[4] = {a0 - c0, a0 - d0, b0 - c0, b0 - d0}, end[4] = {a1 - c1, a1 - d1, b1 - c1, b1 - d1};
-  const MovingEdges pair{{start[0], end[0]}, {b0 - a0, b1 - a1}, {d0 - c0, d1 - c1}};
-  return walk(detail::SeparatingPlanes(start, end), pair, options);
+  return impact_of<SeparatingPlanes::EdgeEdge, MovingEdges>({&a0, &b0, &c0, &d0}, {&a1, &b1, &c1, &d1}, options);
+}
+
+// Of count pairs: the places of those that need a walk, to `left`; how many. The corners of pair k are corners[k].
+TAUT_MULTIVERSION Index not_far_apart(const std::array<Index, 4>* corners, Index count, bool edges, const Vec3* x0, const Vec3* x1,
+                                      double separation, Index* left) {
+  Index found = 0;
+  for (Index k = 0; k < count; ++k) {
+    Corners at_start, at_end;
+    for (int i = 0; i < 4; ++i) at_start[i] = x0 + corners[k][i], at_end[i] = x1 + corners[k][i];
+    bool apart;
+    if (edges) {
+      const SeparatingPlanes planes(SeparatingPlanes::EdgeEdge{}, at_start, at_end);
+      apart = planes.in_range() && planes.far_apart(separation);
+    } else {
+      const SeparatingPlanes planes(SeparatingPlanes::VertexTriangle{}, at_start, at_end);
+      apart = planes.in_range() && planes.far_apart(separation);
+    }
+    left[found] = k;
+    found += !apart;
+  }
+  return found;
 }
 
 namespace {
 
 constexpr Index impact_chunk = 512;
 
-// hits of each chunk in a list of its own, joined in order.
-template <class Test>
-void collect_hits(Index pairs, std::vector<PairImpact>& hits, const Test& test) {
+// Hits of each chunk go to a list of its own; lists are joined in order. corners_of(k): of pair k.
+template <class CornersOf, class Test>
+void collect_hits(Index pairs, bool edges, std::span<const Vec3> x0, std::span<const Vec3> x1, double separation,
+                  const CornersOf& corners_of, const Test& test, std::vector<PairImpact>& hits) {
   const Index chunks = (pairs + impact_chunk - 1) / impact_chunk;
   std::vector<std::vector<PairImpact>> found(static_cast<std::size_t>(chunks));
   parallel_for(chunks, 1, [&](Index begin, Index end) {
-    for (Index c = begin; c < end; ++c)
-      for (Index k = c * impact_chunk; k < std::min(pairs, (c + 1) * impact_chunk); ++k)
-        if (const Impact impact = test(k); impact.hit) found[c].push_back({k, impact.time});
+    std::array<std::array<Index, 4>, impact_chunk> corners;
+    std::array<Index, impact_chunk> left;
+    for (Index c = begin; c < end; ++c) {
+      const Index first = c * impact_chunk, count = std::min(impact_chunk, pairs - first);
+      for (Index k = 0; k < count; ++k) corners[k] = corners_of(first + k);
+      const Index walks = not_far_apart(corners.data(), count, edges, x0.data(), x1.data(), separation, left.data());
+      for (Index w = 0; w < walks; ++w) {
+        const auto [i, j, k, l] = corners[left[w]];
+        const Impact impact = test(x0[i], x0[j], x0[k], x0[l], x1[i], x1[j], x1[k], x1[l]);
+        if (impact.hit) found[c].push_back({first + left[w], impact.time});
+      }
+    }
   });
   hits.clear();
   for (const auto& list : found) hits.insert(hits.end(), list.begin(), list.end());
@@ -92,20 +134,23 @@ void collect_hits(Index pairs, std::vector<PairImpact>& hits, const Test& test) 
 
 void find_impacts(const CollisionSurface& surface, std::span<const Vec3> x0, std::span<const Vec3> x1,
                   std::span<const VertexTriangle> pairs, const CcdOptions& options, std::vector<PairImpact>& hits) {
-  collect_hits(static_cast<Index>(pairs.size()), hits, [&](Index k) {
-    const Index p = pairs[k].vertex;
+  const auto corners_of = [&](Index k) {
     const Triangle& t = surface.triangles[pairs[k].triangle];
-    return vertex_triangle_impact(x0[p], x0[t[0]], x0[t[1]], x0[t[2]], x1[p], x1[t[0]], x1[t[1]], x1[t[2]], options);
-  });
+    return std::array<Index, 4>{pairs[k].vertex, t[0], t[1], t[2]};
+  };
+  const auto test = [&](const auto&... corners) { return vertex_triangle_impact(corners..., options); };
+  collect_hits(static_cast<Index>(pairs.size()), false, x0, x1, options.minimum_separation, corners_of, test, hits);
 }
 
 void find_impacts(const CollisionSurface& surface, std::span<const Vec3> x0, std::span<const Vec3> x1, std::span<const EdgeEdge> pairs,
                   const CcdOptions& options, std::vector<PairImpact>& hits) {
-  collect_hits(static_cast<Index>(pairs.size()), hits, [&](Index k) {
-    const EdgeVertices& e = surface.edges[pairs[k].first];
-    const EdgeVertices& f = surface.edges[pairs[k].second];
-    return edge_edge_impact(x0[e[0]], x0[e[1]], x0[f[0]], x0[f[1]], x1[e[0]], x1[e[1]], x1[f[0]], x1[f[1]], options);
-  });
+  const auto corners_of = [&](Index k) {
+    const auto [a, b] = surface.edges[pairs[k].first];
+    const auto [c, d] = surface.edges[pairs[k].second];
+    return std::array<Index, 4>{a, b, c, d};
+  };
+  const auto test = [&](const auto&... corners) { return edge_edge_impact(corners..., options); };
+  collect_hits(static_cast<Index>(pairs.size()), true, x0, x1, options.minimum_separation, corners_of, test, hits);
 }
 
 }  // namespace taut

@@ -55,6 +55,10 @@ BoxTree::BoxTree(std::vector<Index> corners, int corners_per_item, std::span<con
   for (const Index i : order_)
     for (int k = 0; k < corners_per_item; ++k) corners_.push_back(corner(i, k));
 
+  corner_groups_.assign((count + 7) / 8 * static_cast<std::size_t>(corners_per_item), {{-1, -1, -1, -1, -1, -1, -1, -1}});
+  for (Index slot = 0; slot < static_cast<Index>(count); ++slot)
+    for (int k = 0; k < corners_per_item; ++k) corner_groups_[slot / 8 * corners_per_item + k].corner[slot % 8] = this->corners(slot)[k];
+
   BoxGroup empty;
   for (int i = 0; i < 3; ++i)
     for (int l = 0; l < 8; ++l) empty.low[i][l] = empty.high[i][l] = std::numeric_limits<float>::quiet_NaN();

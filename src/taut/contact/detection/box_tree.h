@@ -60,6 +60,25 @@ inline Mask overlapping(const BoxGroup& group, const Box& box) {
 #endif
 }
 
+// Eight vertex indices side by side: one corner of each item of a group, -1 in empty lanes.
+struct alignas(32) CornerGroup {
+  Index corner[8];
+};
+
+// The lanes that hold vertex v.
+inline Mask holding(const CornerGroup& group, Index v) {
+#if defined(__SSE2__)
+  const __m128i wanted = _mm_set1_epi32(v);
+  const __m128i low = _mm_cmpeq_epi32(_mm_load_si128(reinterpret_cast<const __m128i*>(group.corner)), wanted);
+  const __m128i high = _mm_cmpeq_epi32(_mm_load_si128(reinterpret_cast<const __m128i*>(group.corner + 4)), wanted);
+  return static_cast<Mask>(_mm_movemask_ps(_mm_castsi128_ps(low))) | static_cast<Mask>(_mm_movemask_ps(_mm_castsi128_ps(high))) << 4;
+#else
+  Mask mask = 0;
+  for (int l = 0; l < 8; ++l) mask |= static_cast<Mask>(group.corner[l] == v) << l;
+  return mask;
+#endif
+}
+
 inline Box box_of_lane(const BoxGroup& group, int lane) {
   return {{group.low[0][lane], group.low[1][lane], group.low[2][lane], 0},
           {group.high[0][lane], group.high[1][lane], group.high[2][lane], 0}};
@@ -86,6 +105,8 @@ class BoxTree {
   // Lanes with nothing but solids.
   Mask solid(int level, Index g) const { return solid_[static_cast<std::size_t>(level)][static_cast<std::size_t>(g)]; }
   Index item(Index slot) const { return order_[static_cast<std::size_t>(slot)]; }
+  // Corner k of the items of group g of level 0.
+  const CornerGroup& corner_group(Index g, int k) const { return corner_groups_[static_cast<std::size_t>(g * corners_per_item_ + k)]; }
   // Of the item in a slot.
   const Index* corners(Index slot) const {
     return corners_.data() + static_cast<std::size_t>(slot) * static_cast<std::size_t>(corners_per_item_);
@@ -104,6 +125,7 @@ class BoxTree {
   int corners_per_item_;
   std::vector<Index> order_;    // slot -> item
   std::vector<Index> corners_;  // by slot
+  std::vector<CornerGroup> corner_groups_;
   std::vector<std::vector<BoxGroup>> levels_;
   LevelMasks solid_;
 };

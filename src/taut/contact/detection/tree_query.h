@@ -79,20 +79,19 @@ class TreeQuery {
       if (itself_ && q == g) mask &= ~1u << lane;
       if (first_.solid(0, q) >> lane & 1) mask &= ~second_.solid(0, g);
       if (restricted() && !(moved_first_[0][q] >> lane & 1)) mask &= moved_second_[0][g];
+      if (mask == 0) continue;
       const Index slot = 8 * q + lane;
-      const Index* corners = first_.corners(slot);
-      for (; mask != 0; mask &= mask - 1) {
-        const Index other = 8 * g + std::countr_zero(mask);
-        if (!share_corner(corners, second_.corners(other))) pairs.push_back(make_pair_(first_.item(slot), second_.item(other)));
-      }
+      mask &= ~sharing_corner(first_.corners(slot), g);
+      for (; mask != 0; mask &= mask - 1) pairs.push_back(make_pair_(first_.item(slot), second_.item(8 * g + std::countr_zero(mask))));
     }
   }
 
-  static bool share_corner(const Index* a, const Index* b) {
-    bool shared = false;
-    for (int i = 0; i < first_corners; ++i)
-      for (int j = 0; j < second_corners; ++j) shared |= a[i] == b[j];
-    return shared;
+  // The lanes of group g of the second tree that have one of these corners.
+  Mask sharing_corner(const Index* corners, Index g) const {
+    Mask mask = 0;
+    for (int k = 0; k < second_corners; ++k)
+      for (int i = 0; i < first_corners; ++i) mask |= holding(second_.corner_group(g, k), corners[i]);
+    return mask;
   }
 
   const BoxTree& first_;
