@@ -63,9 +63,9 @@ TEST(RigidMotion, KeepsLinearAndAngularMomentumToRounding) {
       const std::vector<Vec3> end = moved(c, motion);
       const double scale = linear(c, c.x1).norm();
       EXPECT_LE((linear(c, end) - linear(c, c.x1)).norm(), 1e-13 * scale);
-      EXPECT_LE((angular(c, end, c.x0[0]) - angular(c, c.x1, c.x0[0])).norm(), 1e-13 * scale * 0.02 + 1e-12 * angular(c, c.x1, motion.from).norm());
-      for (std::size_t i = 1; i < end.size(); ++i)
-        EXPECT_NEAR((end[i] - end[0]).norm(), (c.x0[i] - c.x0[0]).norm(), 1e-15) << "not rigid";
+      EXPECT_LE((angular(c, end, c.x0[0]) - angular(c, c.x1, c.x0[0])).norm(),
+                1e-13 * scale * 0.02 + 1e-12 * angular(c, c.x1, motion.from).norm());
+      for (std::size_t i = 1; i < end.size(); ++i) EXPECT_NEAR((end[i] - end[0]).norm(), (c.x0[i] - c.x0[0]).norm(), 1e-15) << "not rigid";
     }
   EXPECT_GT(largest_turn, 0.3) << "no cloud that turned";
 }

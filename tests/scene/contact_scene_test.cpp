@@ -1,5 +1,5 @@
-// Short forms of the contact scenes: every few steps another library (CGAL) judges whether anything intersects, and contact must really have
-// happened.
+// Short forms of the contact scenes: every few steps another library (CGAL) judges whether anything intersects, and contact must really
+// have happened.
 
 #include <gtest/gtest.h>
 
@@ -169,7 +169,8 @@ TEST(ContactSimulation, StopsWhereClothIsCrushedAndNamesThePlace) {
   Scene scene = shipped("pinch", {"cloth.grid.nodes=[13,13]", "contact.thickness=1e-3"});
   for (Solid& solid : scene.solids) {
     const double side = solid.name == "upper roller" ? 1.0 : -1.0;
-    solid.key_frames = {{0.0, {Eigen::Quaterniond::Identity(), Vec3(0, 0, 0.065 * side)}}, {0.2, {Eigen::Quaterniond::Identity(), Vec3(0, 0, 0.05 * side)}}};
+    solid.key_frames = {{0.0, {Eigen::Quaterniond::Identity(), Vec3(0, 0, 0.065 * side)}},
+                        {0.2, {Eigen::Quaterniond::Identity(), Vec3(0, 0, 0.05 * side)}}};
   }
   Simulation simulation(scene);
   Status status;

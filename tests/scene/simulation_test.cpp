@@ -121,13 +121,13 @@ TEST(Simulation, GoesOnFromACheckpointToTheSameBits) {
         EXPECT_GE(whole.contact().contacts(), k < 10 ? 0 : 5);
         std::ostringstream out;
         write(out, Checkpoint{scene_to_toml(scene), whole.steps_done(), 3, whole.state(), whole.contact().state(),
-                              whole.stepper().solver().memory()});
+                              whole.stepper().solver().memory(), whole.surface_contact()->state()});
         bytes = out.str();
       }
       ASSERT_TRUE(whole.step(record).ok());
     }
     Checkpoint checkpoint = parse_checkpoint(bytes, "state.bin");
-    resumed.restore(checkpoint.state, checkpoint.contacts, checkpoint.steps, checkpoint.solver_memory);
+    resumed.restore(checkpoint.state, checkpoint.contacts, checkpoint.steps, checkpoint.solver_memory, checkpoint.zones);
     for (int k = at; k < 40; ++k) ASSERT_TRUE(resumed.step(record).ok());
     EXPECT_EQ(resumed.steps_done(), 40);
     expect_same(resumed.state(), whole.state(), integrator);

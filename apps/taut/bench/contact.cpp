@@ -27,7 +27,8 @@ struct Means {
   void add(const StepRecord& r) {
     ++steps;
     near += r.near_ms, impulse += r.impulse_ms, detect += r.detect_ms, zone += r.zone_ms, contact += r.contact_ms, check += r.check_ms;
-    step += r.step_ms, tested += static_cast<double>(r.pairs_tested), pairs += r.near_pairs, impacts += r.impacts, zone_nodes += r.zone_nodes;
+    step += r.step_ms, tested += static_cast<double>(r.pairs_tested), pairs += r.near_pairs, impacts += r.impacts,
+        zone_nodes += r.zone_nodes;
   }
   double mean(double sum) const { return steps > 0 ? sum / steps : 0.0; }
   std::vector<std::string> row(const std::string& scene, Index nodes) const {
@@ -66,8 +67,8 @@ void advance(Simulation& simulation, StepRecord& record) {
 
 struct Experiment {
   const char* scene;
-  int k_nodes;          // nodes along each side
-  double step;          // s; 0: the scene's
+  int k_nodes;           // nodes along each side
+  double step;           // s; 0: the scene's
   double skip, measure;  // s
 };
 
@@ -143,10 +144,12 @@ Json stress(const BenchOptions& options) {
         break;
       }
       const double share = trial.node_steps > 0 ? double(trial.zone_steps) / double(trial.node_steps) : 0.0;
-      fmt::print("{:<16} seed {:>2}: {} steps in {:.0f} s, {} intersections, {:.2f} % of node-steps in zones, at most {} pairs pushing, {} impacts, "
-                 "{} retries, {}\n",
-                 scene, seed, trial.steps, trial.seconds, trial.intersections, 100.0 * share, trial.most_pairs, trial.impacts, trial.retries,
-                 trial.end);
+      fmt::print(
+          "{:<16} seed {:>2}: {} steps in {:.0f} s, {} intersections, {:.2f} % of node-steps in zones, at most {} pairs pushing, {} "
+          "impacts, "
+          "{} retries, {}\n",
+          scene, seed, trial.steps, trial.seconds, trial.intersections, 100.0 * share, trial.most_pairs, trial.impacts, trial.retries,
+          trial.end);
       std::fflush(stdout);
       rows.push_back({{"scene", scene},
                       {"solver", "contact"},
@@ -169,12 +172,14 @@ Json stress(const BenchOptions& options) {
 
 Json bench_contact(const BenchOptions& options) {
   if (options.stress >= 0) return stress(options);
-  const Experiment experiments[] = {{"ball", 161, 3.67e-3, 0.0, 0.2}, {"clump", options.full ? 161 : 81, 0.0, 0.4, options.full ? 0.6 : 0.3}};
+  const Experiment experiments[] = {{"ball", 161, 3.67e-3, 0.0, 0.2},
+                                    {"clump", options.full ? 161 : 81, 0.0, 0.4, options.full ? 0.6 : 0.3}};
   Json rows = Json::array();
-  TextTable table({"scene", "nodes", "near ms", "impulses ms", "detection ms", "zones ms", "contact ms", "check ms", "step ms", "pairs tested",
-                   "near pairs", "impacts", "zone nodes"});
+  TextTable table({"scene", "nodes", "near ms", "impulses ms", "detection ms", "zones ms", "contact ms", "check ms", "step ms",
+                   "pairs tested", "near pairs", "impacts", "zone nodes"});
   for (const Experiment& e : experiments) measure(e, options, table, rows);
-  fmt::print("{}\nMeans a step; of clump in its heap. Paper (Figure 4, 25,921 nodes): 1,080 ms of contact a step on its machine.\n", table.text());
+  fmt::print("{}\nMeans a step; of clump in its heap. Paper (Figure 4, 25,921 nodes): 1,080 ms of contact a step on its machine.\n",
+             table.text());
   return rows;
 }
 

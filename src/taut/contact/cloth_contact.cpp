@@ -39,15 +39,13 @@ struct ClothContact::Work {
   RigidZones zones;
   std::vector<ContactRow> rows;
   Trouble trouble;
-  std::vector<std::uint8_t> moved, ever_moved;  // since the last search; since the start
+  std::vector<std::uint8_t> moved;  // since the last search
 
   Work(const ClothContactStep& the_step, std::span<Vec3> end, std::span<const double> mass)
-      : step(the_step), x1(end), zones(mass, the_step.held), moved(end.size()), ever_moved(end.size()) {}
+      : step(the_step), x1(end), zones(mass, the_step.held), moved(end.size()) {}
 
   void forget_moved() { std::ranges::fill(moved, std::uint8_t{0}); }
-  void remember_moved() {
-    for (std::size_t i = 0; i < moved.size(); ++i) ever_moved[i] |= moved[i];
-  }
+  bool none_moved() const { return std::ranges::none_of(moved, std::identity{}); }
 };
 
 ClothContact::ClothContact(CollisionSurface surface, std::vector<CollisionBody> bodies, std::span<const Vec3> start,
@@ -97,7 +95,7 @@ Status ClothContact::resolve(const ClothContactStep& step, std::span<Vec3> x1) {
 void ClothContact::repel(Work& work) {
   Timer timer;
   const std::vector<NearPair> near =
-      search_.near(work.step.x0, largest_thickness_, [&](const CollisionPair& pair) { return thickness_of(pair); });
+      search_.near(work.step.x0, work.x1, largest_thickness_, [&](const CollisionPair& pair) { return thickness_of(pair); });
   counts_.near = static_cast<int>(near.size());
   work.rows.reserve(near.size());
   for (const NearPair& pair : near) {
@@ -114,9 +112,10 @@ void ClothContact::repel(Work& work) {
 }
 
 // Collisions of the pairs with a node in `moved` (all, where it is empty), and those nodes' obstacles.
-void ClothContact::find_trouble(Work& work, std::span<const std::uint8_t> moved) {
-  work.trouble.pairs = search_.colliding(work.step.x0, work.x1, separation_, moved,
-                                         [&](const CollisionPair& pair) { return ignored(pair) || work.zones.together(pair.node); });
+void ClothContact::find_trouble(Work& work, std::span<const std::uint8_t> moved, bool same_way) {
+  const auto skip = [&](const CollisionPair& pair) { return ignored(pair) || work.zones.together(pair.node); };
+  work.trouble.pairs = same_way ? search_.colliding_on_the_same_way(work.step.x0, work.x1, separation_, skip)
+                                : search_.colliding(work.step.x0, work.x1, separation_, moved, skip);
   work.trouble.obstacles.clear();
   if (!work.step.solids || work.step.solids->solids().empty()) return;
   const Index nodes = work.step.solids->nodes();
@@ -132,9 +131,9 @@ void ClothContact::find_trouble(Work& work, std::span<const std::uint8_t> moved)
 // True when nothing was found.
 bool ClothContact::sweep(Work& work, int round) {
   Timer timer;
-  find_trouble(work, round == 0 ? std::span<const std::uint8_t>() : work.moved);
+  const bool first = round == 0;
+  find_trouble(work, first ? std::span<const std::uint8_t>() : work.moved, first && work.none_moved());
   counts_.detect_ms += timer.lap();
-  work.remember_moved();
   work.forget_moved();
   if (work.trouble.none()) return true;
   counts_.impacts += static_cast<int>(work.trouble.pairs.size());
@@ -152,7 +151,8 @@ bool ClothContact::sweep(Work& work, int round) {
     work.rows.push_back(obstacle_row(node, obstacle, work.step.x0[node]));
     weigh(work.rows.back(), work.step.inverse_mass);
   }
-  satisfy_rows(work.rows, work.step.inverse_mass, work.step.x0, work.x1, work.moved, impulse_iterations, tolerance_share * options_.thickness);
+  satisfy_rows(work.rows, work.step.inverse_mass, work.step.x0, work.x1, work.moved, impulse_iterations,
+               tolerance_share * options_.thickness);
   // What could not be moved still collides, and must be found again.
   for (const CollidingPair& hit : work.trouble.pairs)
     for (const Index node : hit.pair.node) work.moved[node] = 1;
@@ -181,9 +181,8 @@ Status ClothContact::hold(Work& work) {
       status = contradiction(work, *zone);
       break;
     }
-    find_trouble(work, work.moved);
-    work.remember_moved();
-    work.forget_moved();
+    find_trouble(work, work.moved, false);
+      work.forget_moved();
   }
   counts_.zone_ms += timer.lap();
   return status;

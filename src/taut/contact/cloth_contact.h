@@ -1,6 +1,6 @@
 #pragma once
-// What keeps cloth from passing through itself, other cloths and solids' meshes: corrects the positions at the end of a step so that no pair
-// of the surface meets on the way, or says that it cannot (docs/mathematics.md, 6; Bridson, Fedkiw & Anderson 2002; paper Section 7).
+// What keeps cloth from passing through itself, other cloths and solids' meshes: corrects the positions at the end of a step so that no
+// pair of the surface meets on the way, or says that it cannot (docs/mathematics.md, 6; Bridson, Fedkiw & Anderson 2002; paper Section 7).
 //
 //   x0            m, positions at the start, without intersections
 //   x1            m, where the dynamics would end; changed in place
@@ -11,7 +11,9 @@
 //   2  impulses   pairs that collide on the way end apart on the side where they were, with Coulomb friction (impulses.h); repeated for the
 //                 pairs of moved nodes until none collides, at most `sweeps` times. Nodes stay out of analytic solids likewise
 //   3  zones      what still collides moves as rigid bodies, merged as they grow, until nothing collides (rigid_zones.h)
-//   4  proof      one conservative pass over all pairs of nodes that were moved
+//
+// A pair is searched again whenever one of its nodes has moved, so that at the end every pair has been proved free on its final way, or lies in
+// one zone, inside which nothing can meet.
 //
 // The average velocities (x1 - x0)/h keep their linear momentum, but for what pins and solids take. Deterministic: the same bits for any
 // number of threads. One step at a time.
@@ -37,22 +39,22 @@ struct CollisionBody {
 };
 
 struct ClothContactStep {
-  double h = 0.0;                      // s
-  std::span<const Vec3> x0;            // one each a vertex of the surface, like all that follows
+  double h = 0.0;                        // s
+  std::span<const Vec3> x0;              // one each a vertex of the surface, like all that follows
   std::span<const double> inverse_mass;  // 1/kg, 0 for what is held
-  std::span<const std::uint8_t> held;  // not 0: ends where x1 says
+  std::span<const std::uint8_t> held;    // not 0: ends where x1 says
   const SolidContact* solids = nullptr;  // analytic ones, begun for this step; its nodes are the first vertices
 };
 
 struct ClothContactCounts {
-  Offset tested = 0;       // pairs of the broad phase, of all passes
-  int near = 0;            // pairs nearer than their thickness at the start
-  int pushing = 0;         // rows with an impulse at the end
-  int impacts = 0;         // collisions found on the way, in all sweeps
+  Offset tested = 0;  // pairs of the broad phase, of all passes
+  int near = 0;       // pairs nearer than their thickness at the start
+  int pushing = 0;    // rows with an impulse at the end
+  int impacts = 0;    // collisions found on the way, in all sweeps
   int sweeps = 0;
   int zones = 0, zone_nodes = 0, largest_zone = 0;
   int zone_rounds = 0;
-  int inexact = 0;         // zones that turned too far to keep all angular momentum
+  int inexact = 0;  // zones that turned too far to keep all angular momentum
   double near_ms = 0.0, impulse_ms = 0.0, detect_ms = 0.0, zone_ms = 0.0;
 };
 
@@ -91,7 +93,7 @@ class ClothContact {
   const CollisionBody* solid_of(const CollisionPair& pair) const;
   void repel(Work& work);
   bool sweep(Work& work, int round);
-  void find_trouble(Work& work, std::span<const std::uint8_t> moved);
+  void find_trouble(Work& work, std::span<const std::uint8_t> moved, bool same_way);
   Status hold(Work& work);
   Status unresolved(const Work& work, std::span<const Index> nodes, const std::string& why);
   Status contradiction(const Work& work, const RigidZone& zone);

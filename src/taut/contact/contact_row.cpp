@@ -10,7 +10,8 @@ namespace {
 // Impulses that a row has not needed for this share of its own are not worth a node's being checked again.
 constexpr double negligible = 1e-3;
 
-void push(const ContactRow& row, const Vec3& impulse, std::span<const double> inverse_mass, std::span<Vec3> x1, std::span<std::uint8_t> moved) {
+void push(const ContactRow& row, const Vec3& impulse, std::span<const double> inverse_mass, std::span<Vec3> x1,
+          std::span<std::uint8_t> moved) {
   for (std::size_t k = 0; k < 4 && row.node[k] >= 0; ++k) {
     const Index i = row.node[k];
     const double share = row.weight[k] * inverse_mass[i];
@@ -31,8 +32,8 @@ Vec3 friction_step(const ContactRow& row, std::span<const Vec3> x0, std::span<co
 }
 
 // Returns how far the row's points moved against one another.
-double satisfy(ContactRow& row, std::span<const double> inverse_mass, std::span<const Vec3> x0, std::span<Vec3> x1, std::span<std::uint8_t> moved,
-               double tolerance) {
+double satisfy(ContactRow& row, std::span<const double> inverse_mass, std::span<const Vec3> x0, std::span<Vec3> x1,
+               std::span<std::uint8_t> moved, double tolerance) {
   const double missing = row.target - row.normal.dot(separation(row, x1));
   const double lambda = std::max(0.0, row.lambda + missing / row.inverse_mass);
   if (lambda == 0.0 && row.lambda == 0.0) return 0.0;

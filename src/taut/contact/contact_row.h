@@ -7,8 +7,8 @@
 //   lambda                             kg m: h times the impulse along n, accumulated, never negative
 //   friction                           kg m: h times the tangential impulse, |friction| <= mu lambda (Coulomb)
 //
-// inverse mass of a node: 1/kg; 0 where it is held. Contact with analytic solids is a row of its own, not a direction without mass: a push that
-// is nearly along such a direction would throw the node sideways.
+// inverse mass of a node: 1/kg; 0 where it is held. Contact with analytic solids is a row of its own, not a direction without mass: a push
+// that is nearly along such a direction would throw the node sideways.
 
 #include <array>
 #include <span>
@@ -23,9 +23,9 @@ struct ContactRow {
   std::array<double, 4> weight{};
   Vec3 normal = Vec3::UnitZ();
   double target = 0.0;
-  double friction = 0.0;      // mu
+  double friction = 0.0;        // mu
   Vec3 carried = Vec3::Zero();  // m: tangential motion over the step that friction aims at; 0 but on a moving solid
-  double inverse_mass = 0.0;  // 1/kg: sum_k weight_k² / m_k; 0: nothing here can move
+  double inverse_mass = 0.0;    // 1/kg: sum_k weight_k² / m_k; 0: nothing here can move
   double lambda = 0.0;
   Vec3 tangential = Vec3::Zero();
 };

@@ -28,15 +28,15 @@ void PairSearch::add_near(const std::vector<Pair>& pairs, std::span<const Vec3> 
   for (const auto& part : found) near.insert(near.end(), part.begin(), part.end());
 }
 
-std::vector<NearPair> PairSearch::near(std::span<const Vec3> x, double largest,
+std::vector<NearPair> PairSearch::near(std::span<const Vec3> x0, std::span<const Vec3> x1, double largest,
                                        const std::function<double(const CollisionPair&)>& thickness) {
-  broad_phase_.refit(x, x, largest);
+  broad_phase_.refit(x0, x1, largest);
   broad_phase_.find_vertex_triangle(vertex_triangle_);
   broad_phase_.find_edge_edge(edge_edge_);
   tested_ += std::ssize(vertex_triangle_) + std::ssize(edge_edge_);
   std::vector<NearPair> near;
-  add_near(vertex_triangle_, x, thickness, near);
-  add_near(edge_edge_, x, thickness, near);
+  add_near(vertex_triangle_, x0, thickness, near);
+  add_near(edge_edge_, x0, thickness, near);
   return near;
 }
 
@@ -71,6 +71,11 @@ std::vector<CollidingPair> PairSearch::colliding(std::span<const Vec3> x0, std::
   broad_phase_.find_vertex_triangle(vertex_triangle_, moved);
   broad_phase_.find_edge_edge(edge_edge_, moved);
   tested_ += std::ssize(vertex_triangle_) + std::ssize(edge_edge_);
+  return colliding_on_the_same_way(x0, x1, separation, skip);
+}
+
+std::vector<CollidingPair> PairSearch::colliding_on_the_same_way(std::span<const Vec3> x0, std::span<const Vec3> x1, double separation,
+                                                                 const std::function<bool(const CollisionPair&)>& skip) {
   std::vector<CollidingPair> colliding;
   add_colliding(vertex_triangle_, x0, x1, separation, skip, colliding);
   add_colliding(edge_edge_, x0, x1, separation, skip, colliding);

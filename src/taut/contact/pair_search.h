@@ -23,13 +23,19 @@ class PairSearch {
  public:
   PairSearch(const CollisionSurface& surface, std::span<const Vec3> start) : broad_phase_(surface, start) {}
 
-  // Pairs closer than thickness(pair) <= largest (m) at x.
-  std::vector<NearPair> near(std::span<const Vec3> x, double largest, const std::function<double(const CollisionPair&)>& thickness);
+  // Pairs closer than thickness(pair) <= largest (m) at x0. The broad phase is made for the whole way to x1.
+  std::vector<NearPair> near(std::span<const Vec3> x0, std::span<const Vec3> x1, double largest,
+                             const std::function<double(const CollisionPair&)>& thickness);
 
   // Pairs with a vertex in `moved` (all, where it is empty) that come nearer than `separation` between x0 and x1; for pairs that start
   // nearer than that, nearer than `kept_share` of where they start. Pairs for which skip() holds are left out.
   std::vector<CollidingPair> colliding(std::span<const Vec3> x0, std::span<const Vec3> x1, double separation,
                                        std::span<const std::uint8_t> moved, const std::function<bool(const CollisionPair&)>& skip);
+
+  // All colliding pairs, among those of the broad phase of near(), which must have been called for the same x0 and x1, with largest >=
+  // separation.
+  std::vector<CollidingPair> colliding_on_the_same_way(std::span<const Vec3> x0, std::span<const Vec3> x1, double separation,
+                                                       const std::function<bool(const CollisionPair&)>& skip);
 
   BroadPhase& broad_phase() { return broad_phase_; }
   Offset tested() const { return tested_; }  // pairs of the broad phase so far

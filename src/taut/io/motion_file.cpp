@@ -51,8 +51,9 @@ std::vector<std::vector<Vec3>> read_raw(const fs::path& path, Index vertices) {
   const std::string bytes = read_file(path);
   const std::size_t sample_size = 12 * static_cast<std::size_t>(vertices);
   if (bytes.empty() || bytes.size() % sample_size != 0)
-    fail(path, fmt::format("has {} bytes; a multiple of {} (float32, x y z of {} vertices a sample) was expected: it belongs to another mesh",
-                           bytes.size(), sample_size, vertices));
+    fail(path,
+         fmt::format("has {} bytes; a multiple of {} (float32, x y z of {} vertices a sample) was expected: it belongs to another mesh",
+                     bytes.size(), sample_size, vertices));
   return floats(path, bytes, vertices);
 }
 

@@ -89,9 +89,9 @@ void transfer(Archive& archive, Content& c) {
   archive.list(c.contacts.solid);
   archive.list(c.contacts.sticking);
   archive.list(c.contacts.normal_force);
+  archive.list(c.solver_memory);
   archive.list(c.zones.node);
   archive.list(c.zones.rides);
-  archive.list(c.solver_memory);
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 // Everything needed to go on with a simulation to the same bits, as one binary file (little-endian):
 //
 //   "TAUTCKP3", then the scene as TOML (length, bytes), steps done, frame, time, has_previous, the arrays x, v, x_prev, v_prev, last (length, doubles),
-//   the contacts, the nodes of rigid zones, the solver's memory, and a checksum (FNV-1a, 64 bits) of all before it
+//   the contacts, the solver's memory, the nodes of rigid zones, and a checksum (FNV-1a, 64 bits) of all before it
 
 #include <iosfwd>
 #include <string>
@@ -19,8 +19,8 @@ struct Checkpoint {
   int frame = 0;
   State state;
   ContactState contacts;
-  ZoneState zones;
   std::vector<double> solver_memory;  // ConstrainedSolver::memory
+  ZoneState zones;
 };
 
 void write(std::ostream& out, const Checkpoint& checkpoint);

@@ -38,7 +38,8 @@ MeshSolid::MeshSolid(const Solid& solid, const std::filesystem::path& folder) : 
 Vec3 MeshSolid::local(std::size_t vertex, double time) const {
   if (samples_.empty()) return mesh_.positions[vertex];
   const double place = std::clamp(time * solid_.motion_rate, 0.0, static_cast<double>(samples_.size() - 1));
-  const std::size_t before = std::min(static_cast<std::size_t>(place), samples_.size() - 1), after = std::min(before + 1, samples_.size() - 1);
+  const std::size_t before = std::min(static_cast<std::size_t>(place), samples_.size() - 1),
+                    after = std::min(before + 1, samples_.size() - 1);
   const double share = place - static_cast<double>(before);
   return (1.0 - share) * samples_[before][vertex] + share * samples_[after][vertex];
 }

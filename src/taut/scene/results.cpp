@@ -72,10 +72,14 @@ void ResultsFolder::remove_frames_after(int frame) const {
 }
 
 void ResultsFolder::write_checkpoint(const Simulation& simulation, int frame) const {
-  const Checkpoint checkpoint{scene_to_toml(simulation.scene()), simulation.steps_done(), frame, simulation.state(),
+  const SurfaceContact* surface_contact = simulation.surface_contact();
+  const Checkpoint checkpoint{scene_to_toml(simulation.scene()),
+                              simulation.steps_done(),
+                              frame,
+                              simulation.state(),
                               simulation.contact().state(),
-                              simulation.surface_contact() ? simulation.surface_contact()->state() : ZoneState{},
-                              simulation.stepper().solver().memory()};
+                              simulation.stepper().solver().memory(),
+                              surface_contact ? surface_contact->state() : ZoneState{}};
   write_file(checkpoint_file(), [&](std::ostream& out) { write(out, checkpoint); });
 }
 

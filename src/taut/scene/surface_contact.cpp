@@ -71,7 +71,8 @@ void SurfaceContact::refuse_intersections(std::span<const Vec3> start) {
   std::string text = fmt::format("cloth intersects at the start, at {} places:", found.size());
   for (std::size_t k = 0; k < std::min(found.size(), most_named); ++k) text += "\n  " + describe(found[k]);
   if (found.size() > most_named) text += fmt::format("\n  and {} more", found.size() - most_named);
-  throw InputError(text + "\nMove them apart, or start as it is with contact.allow_intersections = true; what has passed through may then stay so");
+  throw InputError(
+      text + "\nMove them apart, or start as it is with contact.allow_intersections = true; what has passed through may then stay so");
 }
 
 void SurfaceContact::hold_zones(const State& state, double h, ConstraintSet& constraints) const {
@@ -90,8 +91,8 @@ void SurfaceContact::weigh_nodes(const ConstraintSet& pins) {
   }
 }
 
-Status SurfaceContact::correct(double t, double h, std::span<const Vec3> x0, const ConstraintSet& pins,
-                               const SolidContact& solids, std::span<Vec3> x_end, bool& changed) {
+Status SurfaceContact::correct(double t, double h, std::span<const Vec3> x0, const ConstraintSet& pins, const SolidContact& solids,
+                               std::span<Vec3> x_end, bool& changed) {
   weigh_nodes(pins);
   x0_.assign(x0.begin(), x0.end());
   x1_.assign(x_end.begin(), x_end.end());
