@@ -172,9 +172,7 @@ Status ClothContact::hold(Work& work) {
     for (const auto& [node, obstacle] : work.trouble.obstacles)
       grown |= work.zones.attach(node, obstacle.solid, work.step.x0[node], obstacle.carried);
     if (!grown || counts_.zone_rounds > most_zone_rounds) {
-      const CollidingPair* hit = work.trouble.pairs.empty() ? nullptr : &work.trouble.pairs.front();
-      const Index node = hit ? hit->pair.node[0] : work.trouble.obstacles.front().first;
-      status = unresolved(work, hit ? std::span<const Index>(hit->pair.node) : std::span(&node, 1), "cannot be kept apart");
+      status = stuck(work);
       break;
     }
     if (const RigidZone* zone = work.zones.move(work.step.x0, work.x1, tolerance, work.moved)) {
@@ -219,6 +217,20 @@ Status ClothContact::unresolved(const Work& work, std::span<const Index> nodes, 
   std::vector<std::string> places;
   for (const Index node : nodes) places.push_back(place(node, work.step.x0[node]));
   return {Outcome::breakdown, fmt::format("contact: {} {}", fmt::join(places, ", "), why)};
+}
+
+// Nothing is left to merge or attach, and still there is a collision: with what holds its zone, or between held nodes.
+Status ClothContact::stuck(const Work& work) {
+  std::vector<Index> nodes;
+  if (!work.trouble.pairs.empty()) {
+    const auto& pair = work.trouble.pairs.front().pair.node;
+    nodes.assign(pair.begin(), pair.end());
+  } else {
+    nodes.push_back(work.trouble.obstacles.front().first);
+  }
+  for (const Index node : nodes)
+    if (const RigidZone* zone = work.zones.zone_of(node); zone && !zone->attachments.empty()) return contradiction(work, *zone);
+  return unresolved(work, nodes, "cannot be kept apart");
 }
 
 Status ClothContact::contradiction(const Work& work, const RigidZone& zone) {

@@ -96,6 +96,7 @@ class ClothContact {
   void find_trouble(Work& work, std::span<const std::uint8_t> moved, bool same_way);
   Status hold(Work& work);
   Status unresolved(const Work& work, std::span<const Index> nodes, const std::string& why);
+  Status stuck(const Work& work);
   Status contradiction(const Work& work, const RigidZone& zone);
   std::string place(Index vertex, const Vec3& x) const;
   void note(const Work& work);

@@ -99,11 +99,14 @@ bool RigidZones::together(std::span<const Index> nodes) const {
   return true;
 }
 
-bool RigidZones::rides(Index node, Index solid) const {
+const RigidZone* RigidZones::zone_of(Index node) const {
   const auto place = zone_of_.find(node);
-  if (place == zone_of_.end()) return false;
-  const auto& attachments = zones_.at(place->second).attachments;
-  return std::ranges::find(attachments, -1 - solid, &ZoneAttachment::holder) != attachments.end();
+  return place == zone_of_.end() ? nullptr : &zones_.at(place->second);
+}
+
+bool RigidZones::rides(Index node, Index solid) const {
+  const RigidZone* zone = zone_of(node);
+  return zone && std::ranges::find(zone->attachments, -1 - solid, &ZoneAttachment::holder) != zone->attachments.end();
 }
 
 Index RigidZones::node_count() const { return static_cast<Index>(zone_of_.size()); }

@@ -51,6 +51,8 @@ class RigidZones {
   Index node_count() const;
   int inexact() const { return inexact_; }  // motions that turned by more than momentum-keeping motions can
   bool contains(Index node) const { return zone_of_.contains(node); }
+  // The zone that a node is in, or null.
+  const RigidZone* zone_of(Index node) const;
   // Is the node in a zone that rides with this solid?
   bool rides(Index node, Index solid) const;
 
