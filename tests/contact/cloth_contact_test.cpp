@@ -13,7 +13,8 @@
 namespace taut {
 namespace {
 
-constexpr double h = 5e-3, thickness = 1e-3;
+constexpr double h = 5e-3;  // s
+constexpr double thickness = 1e-3;
 
 // Some pieces of cloth (or solids' meshes), their masses and where they are.
 struct Pieces {
@@ -59,7 +60,7 @@ struct Pieces {
     ClothContact contact(surface(), bodies, x0, mass, options);
     Result result;
     result.x1 = x1;
-    result.status = contact.resolve({h, x0, inverse_mass, held, nullptr}, result.x1);
+    result.status = contact.resolve({x0, inverse_mass, held, nullptr}, result.x1);
     result.counts = contact.counts();
     result.zones = contact.zone_state();
     return result;

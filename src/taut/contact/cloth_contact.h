@@ -39,7 +39,6 @@ struct CollisionBody {
 };
 
 struct ClothContactStep {
-  double h = 0.0;                        // s
   std::span<const Vec3> x0;              // one each a vertex of the surface, like all that follows
   std::span<const double> inverse_mass;  // 1/kg, 0 for what is held
   std::span<const std::uint8_t> held;    // not 0: ends where x1 says

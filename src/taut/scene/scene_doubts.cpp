@@ -94,6 +94,13 @@ void doubt_jitter(Doubts& d, const Cloth& cloth, const ClothEstimate& e) {
           e.spacing, 0.1 * e.spacing);
 }
 
+void doubt_layers(Doubts& d, const Cloth& cloth, const ClothEstimate& e) {
+  const double thickness = d.scene.contact.thickness;
+  if (d.scene.contact.self && thickness > 0.5 * e.spacing)
+    d.add("contact.thickness = {} m is more than half of an edge of cloth '{}': it will push its own neighbours apart; set it below {:.1g}",
+          thickness, cloth.name, 0.5 * e.spacing);
+}
+
 void doubt_start(Doubts& d, const Cloth& cloth, const TriangleMesh& shape, const Solid& solid) {
   const Pose pose = solid.pose(0.0);
   if (solid.shape == SolidShape::mesh) return;  // found as intersections
@@ -158,6 +165,7 @@ std::vector<std::string> doubtful(const Scene& scene) {
     doubt_core(d, cloth, e);
     doubt_stretch(d, cloth, e);
     doubt_jitter(d, cloth, e);
+    doubt_layers(d, cloth, e);
     for (const Solid& solid : scene.solids) {
       doubt_start(d, cloth, shape, solid);
       doubt_thickness(d, cloth, e, solid);

@@ -99,7 +99,7 @@ Status SurfaceContact::correct(double t, double h, std::span<const Vec3> x0, con
   for (auto* x : {&x0_, &x1_}) x->resize(mass_.size());
   place_solids(t, x0_);
   place_solids(t + h, x1_);
-  const Status status = contact_->resolve({h, x0_, inverse_mass_, held_, &solids}, x1_);
+  const Status status = contact_->resolve({x0_, inverse_mass_, held_, &solids}, x1_);
   if (!status.ok()) return status;
   for (Index i = 0; i < nodes_; ++i) {
     if (x1_[i] == x_end[i]) continue;
