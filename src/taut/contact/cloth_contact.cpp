@@ -40,10 +40,15 @@ struct ClothContact::Work {
   std::vector<ContactRow> rows;
   Trouble trouble;
   std::vector<std::uint8_t> moved;  // since the last search
+  std::vector<std::uint8_t> awake;  // for the rows that are to be met
 
   Work(const ClothContactStep& the_step, std::span<Vec3> end, std::span<const double> mass)
-      : step(the_step), x1(end), zones(mass, the_step.held), moved(end.size()) {}
+      : step(the_step), x1(end), zones(mass, the_step.held), moved(end.size()), awake(end.size(), 1) {}
 
+  void meet_rows(int iterations, double tolerance) {
+    satisfy_rows(rows, step.inverse_mass, step.x0, x1, awake, moved, iterations, tolerance);
+    std::ranges::fill(awake, std::uint8_t{0});
+  }
   void forget_moved() { std::ranges::fill(moved, std::uint8_t{0}); }
   bool none_moved() const { return std::ranges::none_of(moved, std::identity{}); }
 };
@@ -106,8 +111,7 @@ void ClothContact::repel(Work& work) {
       if (!work.step.held[node]) work.rows.push_back(obstacle_row(node, obstacle, work.step.x0[node]));
   for (ContactRow& row : work.rows) weigh(row, work.step.inverse_mass);
   counts_.near_ms += timer.lap();
-  satisfy_rows(work.rows, work.step.inverse_mass, work.step.x0, work.x1, work.moved, repulsion_iterations,
-               tolerance_share * options_.thickness);
+  work.meet_rows(repulsion_iterations, tolerance_share * options_.thickness);
   counts_.impulse_ms += timer.lap();
 }
 
@@ -119,13 +123,16 @@ void ClothContact::find_trouble(Work& work, std::span<const std::uint8_t> moved,
   work.trouble.obstacles.clear();
   if (!work.step.solids || work.step.solids->solids().empty()) return;
   const Index nodes = work.step.solids->nodes();
-  std::vector<std::optional<Obstacle>> found(static_cast<std::size_t>(nodes));
+  std::vector<std::uint8_t> blocked(static_cast<std::size_t>(nodes), 0);
   parallel_for(nodes, node_grain, [&](Index begin, Index end) {
     for (Index i = begin; i < end; ++i)
-      if (!work.step.held[i] && (moved.empty() || moved[i])) found[i] = work.step.solids->obstacle(i, work.x1[i]);
+      blocked[i] = !work.step.held[i] && (moved.empty() || moved[i]) && work.step.solids->obstacle(i, work.x1[i]);
   });
-  for (Index i = 0; i < nodes; ++i)
-    if (found[i] && !work.zones.rides(i, found[i]->solid)) work.trouble.obstacles.emplace_back(i, *found[i]);
+  for (Index i = 0; i < nodes; ++i) {
+    if (!blocked[i]) continue;
+    const Obstacle obstacle = *work.step.solids->obstacle(i, work.x1[i]);
+    if (!work.zones.rides(i, obstacle.solid)) work.trouble.obstacles.emplace_back(i, obstacle);
+  }
 }
 
 // True when nothing was found.
@@ -151,12 +158,11 @@ bool ClothContact::sweep(Work& work, int round) {
     work.rows.push_back(obstacle_row(node, obstacle, work.step.x0[node]));
     weigh(work.rows.back(), work.step.inverse_mass);
   }
-  satisfy_rows(work.rows, work.step.inverse_mass, work.step.x0, work.x1, work.moved, impulse_iterations,
-               tolerance_share * options_.thickness);
   // What could not be moved still collides, and must be found again.
   for (const CollidingPair& hit : work.trouble.pairs)
-    for (const Index node : hit.pair.node) work.moved[node] = 1;
-  for (const auto& [node, obstacle] : work.trouble.obstacles) work.moved[node] = 1;
+    for (const Index node : hit.pair.node) work.moved[node] = work.awake[node] = 1;
+  for (const auto& [node, obstacle] : work.trouble.obstacles) work.moved[node] = work.awake[node] = 1;
+  work.meet_rows(impulse_iterations, tolerance_share * options_.thickness);
   counts_.impulse_ms += timer.lap();
   return false;
 }
@@ -180,7 +186,7 @@ Status ClothContact::hold(Work& work) {
       break;
     }
     find_trouble(work, work.moved, false);
-      work.forget_moved();
+    work.forget_moved();
   }
   counts_.zone_ms += timer.lap();
   return status;

@@ -12,8 +12,8 @@
 //                 pairs of moved nodes until none collides, at most `sweeps` times. Nodes stay out of analytic solids likewise
 //   3  zones      what still collides moves as rigid bodies, merged as they grow, until nothing collides (rigid_zones.h)
 //
-// A pair is searched again whenever one of its nodes has moved, so that at the end every pair has been proved free on its final way, or lies in
-// one zone, inside which nothing can meet.
+// A pair is searched again whenever one of its nodes has moved, so that at the end every pair has been proved free on its final way, or
+// lies in one zone, inside which nothing can meet.
 //
 // The average velocities (x1 - x0)/h keep their linear momentum, but for what pins and solids take. Deterministic: the same bits for any
 // number of threads. One step at a time.

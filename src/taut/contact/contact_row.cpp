@@ -7,8 +7,8 @@ namespace taut {
 
 namespace {
 
-// Impulses that a row has not needed for this share of its own are not worth a node's being checked again.
-constexpr double negligible = 1e-3;
+// Of the tolerance: what is not worth that a node's pairs are searched again.
+constexpr double negligible = 0.1;
 
 void push(const ContactRow& row, const Vec3& impulse, std::span<const double> inverse_mass, std::span<Vec3> x1,
           std::span<std::uint8_t> moved) {
@@ -55,6 +55,16 @@ double satisfy(ContactRow& row, std::span<const double> inverse_mass, std::span<
   return std::max(motion, sideways);
 }
 
+bool is_awake(const ContactRow& row, std::span<const std::uint8_t> awake) {
+  for (std::size_t k = 0; k < 4 && row.node[k] >= 0; ++k)
+    if (awake[row.node[k]]) return true;
+  return false;
+}
+
+void wake(const ContactRow& row, std::span<std::uint8_t> awake) {
+  for (std::size_t k = 0; k < 4 && row.node[k] >= 0; ++k) awake[row.node[k]] = 1;
+}
+
 }  // namespace
 
 Vec3 separation(const ContactRow& row, std::span<const Vec3> x) {
@@ -69,11 +79,15 @@ void weigh(ContactRow& row, std::span<const double> inverse_mass) {
 }
 
 void satisfy_rows(std::span<ContactRow> rows, std::span<const double> inverse_mass, std::span<const Vec3> x0, std::span<Vec3> x1,
-                  std::span<std::uint8_t> moved, int iterations, double tolerance) {
+                  std::span<std::uint8_t> awake, std::span<std::uint8_t> moved, int iterations, double tolerance) {
   for (int k = 0; k < iterations; ++k) {
     double largest = 0.0;
-    for (ContactRow& row : rows)
-      if (row.inverse_mass > 0.0) largest = std::max(largest, satisfy(row, inverse_mass, x0, x1, moved, tolerance));
+    for (ContactRow& row : rows) {
+      if (row.inverse_mass == 0.0 || !is_awake(row, awake)) continue;
+      const double motion = satisfy(row, inverse_mass, x0, x1, moved, tolerance);
+      if (motion > 0.0) wake(row, awake);
+      largest = std::max(largest, motion);
+    }
     if (largest <= tolerance) return;
   }
 }

@@ -37,11 +37,12 @@ Vec3 separation(const ContactRow& row, std::span<const Vec3> x);
 void weigh(ContactRow& row, std::span<const double> inverse_mass);
 
 // Meets the rows as well as `iterations` rounds of projected Gauss-Seidel can, in the order of the rows, by impulses that keep momentum:
-// x1_k += weight_k / m_k (dlambda n + dtangential). Rows that hold already and have no impulse change nothing. Stops early when no row
-// moves its points by more than `tolerance` (m). moved[k] = 1 for nodes that it moved. Source: Moreau's time stepping, solved as in
-// Otaduy, Tamstorf, Steinemann & Gross 2009, "Implicit contact handling for deformable objects"; Bridson et al. 2002 apply each impulse
-// once and never take it back, which in a stack of layers throws the upper ones off.
+// x1_k += weight_k / m_k (dlambda n + dtangential). Only rows with a node marked in `awake` are looked at, and the nodes that a row moves
+// awake: what settled before and is not disturbed stays as it is. Changes that would move a row's points by less than a tenth of
+// `tolerance` (m) are not made; it ends early when none is greater than that. moved[k] = 1 for nodes that it moved. Source: Moreau's time
+// stepping, solved as in Otaduy, Tamstorf, Steinemann & Gross 2009, "Implicit contact handling for deformable objects"; Bridson et al. 2002
+// apply each impulse once and never take it back, which in a stack of layers throws the upper ones off.
 void satisfy_rows(std::span<ContactRow> rows, std::span<const double> inverse_mass, std::span<const Vec3> x0, std::span<Vec3> x1,
-                  std::span<std::uint8_t> moved, int iterations, double tolerance);
+                  std::span<std::uint8_t> awake, std::span<std::uint8_t> moved, int iterations, double tolerance);
 
 }  // namespace taut

@@ -1,5 +1,7 @@
 #include "taut/contact/pair_search.h"
 
+#include <algorithm>
+
 #include "taut/base/parallel.h"
 
 namespace taut {
@@ -8,20 +10,30 @@ namespace {
 
 constexpr Index chunk = 2048;  // pairs handled by one task
 
+// A plane across the line between the middles, that keeps all corners further apart than `distance`, settles most pairs cheaply.
+bool surely_apart(const CollisionPair& pair, std::span<const Vec3> x, double distance) {
+  const Vec3 &a = x[pair.node[0]], &b = x[pair.node[1]], &c = x[pair.node[2]], &d = x[pair.node[3]];
+  if (pair.edges) {
+    const Vec3 n = (a + b) - (c + d);
+    return std::min(n.dot(a), n.dot(b)) - std::max(n.dot(c), n.dot(d)) > distance * n.norm();
+  }
+  const Vec3 n = 3.0 * a - (b + c + d);
+  return n.dot(a) - std::max({n.dot(b), n.dot(c), n.dot(d)}) > distance * n.norm();
+}
+
 }  // namespace
 
 template <class Pair>
-void PairSearch::add_near(const std::vector<Pair>& pairs, std::span<const Vec3> x,
+void PairSearch::add_near(const std::vector<Pair>& pairs, std::span<const Vec3> x, double largest,
                           const std::function<double(const CollisionPair&)>& thickness, std::vector<NearPair>& near) {
   const Index count = static_cast<Index>(pairs.size()), chunks = (count + chunk - 1) / chunk;
   std::vector<std::vector<NearPair>> found(static_cast<std::size_t>(chunks));
   parallel_for(chunks, 1, [&](Index begin, Index end) {
     for (Index c = begin; c < end; ++c)
       for (Index k = c * chunk; k < std::min(count, (c + 1) * chunk); ++k) {
-        const NearPair candidate = [&] {
-          const CollisionPair pair = pair_of(broad_phase_.surface(), pairs[k]);
-          return NearPair{pair, closest(pair, x)};
-        }();
+        const CollisionPair pair = pair_of(broad_phase_.surface(), pairs[k]);
+        if (surely_apart(pair, x, largest)) continue;
+        const NearPair candidate{pair, closest(pair, x)};
         if (candidate.proximity.inside && candidate.proximity.distance < thickness(candidate.pair)) found[c].push_back(candidate);
       }
   });
@@ -35,8 +47,8 @@ std::vector<NearPair> PairSearch::near(std::span<const Vec3> x0, std::span<const
   broad_phase_.find_edge_edge(edge_edge_);
   tested_ += std::ssize(vertex_triangle_) + std::ssize(edge_edge_);
   std::vector<NearPair> near;
-  add_near(vertex_triangle_, x0, thickness, near);
-  add_near(edge_edge_, x0, thickness, near);
+  add_near(vertex_triangle_, x0, largest, thickness, near);
+  add_near(edge_edge_, x0, largest, thickness, near);
   return near;
 }
 

@@ -45,8 +45,8 @@ class PairSearch {
 
  private:
   template <class Pair>
-  void add_near(const std::vector<Pair>& pairs, std::span<const Vec3> x, const std::function<double(const CollisionPair&)>& thickness,
-                std::vector<NearPair>& near);
+  void add_near(const std::vector<Pair>& pairs, std::span<const Vec3> x, double largest,
+                const std::function<double(const CollisionPair&)>& thickness, std::vector<NearPair>& near);
   template <class Pair>
   void add_colliding(const std::vector<Pair>& pairs, std::span<const Vec3> x0, std::span<const Vec3> x1, double separation,
                      const std::function<bool(const CollisionPair&)>& skip, std::vector<CollidingPair>& colliding);
