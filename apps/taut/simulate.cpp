@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "interrupt.h"
+#include "live_export.h"
 
 namespace taut::app {
 
@@ -14,8 +15,10 @@ void print_summary(const RunSummary& s, const Simulation& simulation, const Resu
   const auto row = [](const char* name, const std::string& value) { fmt::print("  {:<22}{}\n", name, value); };
   row("nodes", fmt::format("{}", s.nodes));
   row("solver", fmt::format("{}, tolerance {:g}", scene.solver.name, scene.solver.tolerance));
-  row("steps", fmt::format("{} of {:g} ms ({} frames, {:.3f} s simulated in {:.1f} s)", s.steps, 1000.0 * scene.time.step, s.frames, s.simulated_s, s.wall_s));
-  row("time a step", fmt::format("{:.1f} ms: assembly {:.1f}, solver {:.1f}, contact {:.1f}", s.mean_step_ms, s.mean_assemble_ms, s.mean_solver_ms, s.mean_contact_ms));
+  row("steps", fmt::format("{} of {:g} ms ({} frames, {:.3f} s simulated in {:.1f} s)", s.steps, 1000.0 * scene.time.step, s.frames,
+                           s.simulated_s, s.wall_s));
+  row("time a step", fmt::format("{:.1f} ms: assembly {:.1f}, solver {:.1f}, contact {:.1f}", s.mean_step_ms, s.mean_assemble_ms,
+                                 s.mean_solver_ms, s.mean_contact_ms));
   row("iterations", fmt::format("{:.1f} on average, {} at most", s.mean_iterations, s.max_iterations));
   row("largest stretch", fmt::format("{:.1f} %", 100.0 * s.max_stretch));
   if (s.deepest_m > 0.0) row("deepest in a solid", fmt::format("{:.3g} mm before it was moved out", 1000.0 * s.deepest_m));
@@ -26,25 +29,32 @@ void print_summary(const RunSummary& s, const Simulation& simulation, const Resu
   row("frames", (results.folder() / "frames").string());
   row("step by step", results.stats_file().string());
   row("summary", results.summary_file().string());
-  fmt::print("\n  taut export {} --format obj   turns the frames into files for other programs\n", results.folder().string());
+  fmt::print("\n  taut export {} --format usd   turns the frames into files for other programs\n", results.folder().string());
 }
 
 }  // namespace
 
 int simulate(Simulation& simulation, const ResultsFolder& results, const SimulateOptions& options, int first_frame) {
   RunSummary summary;
+  int exported = -1;  // 0: failed
   {
     const auto progress = make_progress(options.style, simulation.scene());
-    summary = run(simulation, results, *progress, interrupt_flag(), first_frame);
+    std::unique_ptr<LiveExport> exporting;
+    if (!options.export_format.empty()) exporting = std::make_unique<LiveExport>(results, options.export_format, *progress);
+    summary = run(simulation, results, exporting ? *exporting : *progress, interrupt_flag(), first_frame);
+    if (exporting) exported = exporting->finish() ? 1 : 0;
   }
   if (options.picture) draw_contact_sheet(simulation, results);
   if (options.style == ProgressStyle::automatic) print_summary(summary, simulation, results, options.picture);
   switch (summary.end) {
-    case RunEnd::finished: return 0;
+    case RunEnd::finished:
+      return exported == 0 ? 1 : 0;
     case RunEnd::interrupted:
       fmt::print(stderr, "\ninterrupted after {} frames; go on with: taut resume {}\n", summary.frames, results.folder().string());
       return 1;
-    case RunEnd::failed: fmt::print(stderr, "taut: {}\nEverything up to there is in {}\n", summary.message, results.folder().string()); return 1;
+    case RunEnd::failed:
+      fmt::print(stderr, "taut: {}\nEverything up to there is in {}\n", summary.message, results.folder().string());
+      return 1;
   }
   return 1;
 }

@@ -1,6 +1,8 @@
 #pragma once
 // What `run` and `resume` share: run with progress and interruption, draw the contact sheet, say what came out and where it is.
 
+#include <string>
+
 #include "progress.h"
 #include "taut/scene/run.h"
 
@@ -8,7 +10,8 @@ namespace taut::app {
 
 struct SimulateOptions {
   ProgressStyle style = ProgressStyle::automatic;
-  bool picture = true;  // draw the contact sheet at the end
+  bool picture = true;        // draw the contact sheet at the end
+  std::string export_format;  // of an export while it runs (live_export.h); empty: none
 };
 
 // Returns the exit code.

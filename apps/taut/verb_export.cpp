@@ -1,10 +1,8 @@
 #include <fmt/format.h>
 
+#include "frame_range.h"
 #include "taut/base/error.h"
-#include "taut/io/obj.h"
-#include "taut/io/pc2.h"
-#include "taut/scene/results.h"
-#include "taut/scene/scene_file.h"
+#include "taut/scene/sequence_export.h"
 #include "verbs.h"
 
 namespace taut::app {
@@ -12,60 +10,62 @@ namespace taut::app {
 namespace {
 
 struct ExportArguments {
-  std::string folder, format, out;
+  std::string folder, out, up, frames;
+  SequenceExportOptions options;
 };
 
-// One cloth's mesh at one frame, vertex order and texture coordinates as they came in.
-TriangleMesh part_mesh(const ClothModel& cloth, const ClothPart& part, std::span<const Vec3> x) {
-  TriangleMesh mesh;
-  const TriangleMesh& surface = cloth.surface();
-  mesh.positions.assign(x.begin() + part.first_node, x.begin() + part.first_node + part.node_count);
-  mesh.texcoords.assign(surface.texcoords.begin() + part.first_node, surface.texcoords.begin() + part.first_node + part.node_count);
-  for (Index t = part.first_triangle; t < part.first_triangle + part.triangle_count; ++t) {
-    Triangle triangle = surface.triangles[t];
-    for (Index& node : triangle) node -= part.first_node;
-    mesh.triangles.push_back(triangle);
-  }
-  return mesh;
+int export_frames(ExportArguments& arguments) {
+  const ResultFrames frames(arguments.folder);
+  SequenceExportOptions& options = arguments.options;
+  const FrameRange range = chosen_frames(arguments.frames, frames);
+  options.first = range.first, options.last = range.last, options.stride = range.stride;
+  options.folder = arguments.out.empty() ? frames.results().folder() / options.format : std::filesystem::path(arguments.out);
+  if (!arguments.up.empty()) options.up = arguments.up == "y" ? UpAxis::y : UpAxis::z;
+  if (!frames.run_has_finished())
+    fmt::print(stderr, "note: the run has not finished (it is running, or was interrupted); there are frames 0 to {} so far\n",
+               frames.last_frame());
+  SequenceExport sequence(frames, options);
+  sequence.add_frames_until(options.last);
+  sequence.finish();
+  fmt::print("{} frames of {} cloths and {} solids written to {}\n", sequence.frames_added(), frames.cloth().parts().size(),
+             frames.scene().solids.size(), options.folder.string());
+  return 0;
 }
 
-int export_frames(const ExportArguments& arguments) {
-  const ResultsFolder results(arguments.folder);
-  const ClothModel cloth(read_scene(results.scene_file()));
-  const int frames = results.frame_count();
-  if (frames == 0) throw InputError({arguments.folder}, "holds no frames yet");
-  const std::filesystem::path out = arguments.out.empty() ? results.folder() / arguments.format : std::filesystem::path(arguments.out);
-  for (const ClothPart& part : cloth.parts()) {
-    std::unique_ptr<Pc2Writer> cache;
-    if (arguments.format == "pc2") cache = std::make_unique<Pc2Writer>(out / (part.name + ".pc2"), part.node_count);
-    for (int frame = 0; frame < frames; ++frame) {
-      const std::vector<Vec3> x = results.read_frame(frame);
-      if (static_cast<Index>(x.size()) != cloth.nodes())
-        throw InputError({results.frame_file(frame).string()}, fmt::format("has {} nodes, the scene has {}", x.size(), cloth.nodes()));
-      // A point cache moves a mesh: its first frame goes beside it.
-      if (!cache)
-        write_obj(out / fmt::format("{}_{:06}.obj", part.name, frame), part_mesh(cloth, part, x));
-      else if (frame == 0)
-        write_obj(out / (part.name + ".obj"), part_mesh(cloth, part, x));
-      if (cache) cache->add_sample(std::span(x).subspan(part.first_node, part.node_count));
-    }
-    if (cache) cache->finish();
-  }
-  fmt::print("{} frames of {} cloths written to {}\n", frames, cloth.parts().size(), out.string());
-  return 0;
+std::string format_help() {
+  std::string help;
+  for (const SequenceFormat& format : sequence_formats())
+    help += fmt::format("{}{}: {}", help.empty() ? "" : "; ", format.name, format.description);
+  return help;
 }
 
 }  // namespace
 
+std::vector<std::string> export_format_names() {
+  std::vector<std::string> names;
+  for (const SequenceFormat& format : sequence_formats()) names.emplace_back(format.name);
+  return names;
+}
+
 void add_export_verb(CLI::App& app, int& exit_code) {
-  CLI::App* verb = app.add_subcommand("export", "Convert the frames of a simulation for other programs");
+  CLI::App* verb = app.add_subcommand("export", "Convert the frames of a simulation, finished or still running, for other programs");
   auto arguments = std::make_shared<ExportArguments>();
   verb->add_option("DIR", arguments->folder, "Results folder of `taut run`")->required();
-  verb->add_option("--format", arguments->format, "obj: a file a frame and cloth; pc2: a mesh and a point cache a cloth")
-      ->required()
-      ->check(CLI::IsMember({"obj", "pc2"}));
+  verb->add_option("--format", arguments->options.format, format_help())->required()->check(CLI::IsMember(export_format_names()));
   verb->add_option("--out", arguments->out, "Folder to write to (default: DIR/FORMAT)");
-  verb->footer("Example: taut export out/ball --format pc2");
+  verb->add_option("--frames", arguments->frames, "Only these, both included (default: all there are)")
+      ->type_name("FIRST:LAST[:STEP]")
+      ->check(frame_range_syntax());
+  verb->add_option("--scale", arguments->options.scale, "Lengths in the files: 100 makes centimetres of metres (default: 1)")
+      ->check(CLI::PositiveNumber);
+  verb->add_option("--up", arguments->up, "Upward axis of the files: y turns (x, y, z) to (x, z, -y) (default: z; y for gltf)")
+      ->check(CLI::IsMember({"y", "z"}));
+  verb->footer(
+      "Example: taut export out/ball --format usd\n"
+      "Example: taut export out/ball --format pc2 --scale 100 --up y --frames 0:40 --out maya\n"
+      "Vertices keep their order, texture coordinates are kept, solids are exported as meshes. docs/formats.md says what is in the files "
+      "and\n"
+      "how to open them. `taut run SCENE --export FORMAT` exports while it runs.");
   verb->callback([arguments, &exit_code] { exit_code = export_frames(*arguments); });
 }
 

@@ -9,13 +9,13 @@ namespace taut::app {
 
 namespace {
 
-int resume(const std::string& folder, int threads, bool quiet, bool picture) {
+int resume(const std::string& folder, int threads, bool quiet, bool picture, const std::string& export_format) {
   if (threads > 0) set_thread_count(threads);
   const ResultsFolder results(folder);
   Simulation simulation(read_scene(results.scene_file()));
   const int frame = results.read_checkpoint(simulation);
   if (!quiet) fmt::print(stderr, "going on after frame {} (step {})\n", frame, simulation.steps_done());
-  return simulate(simulation, results, {quiet ? ProgressStyle::quiet : ProgressStyle::automatic, picture}, frame);
+  return simulate(simulation, results, {quiet ? ProgressStyle::quiet : ProgressStyle::automatic, picture, export_format}, frame);
 }
 
 }  // namespace
@@ -30,8 +30,13 @@ void add_resume_verb(CLI::App& app, int& exit_code) {
   verb->add_flag("--quiet", *quiet, "No progress and no table");
   auto no_picture = std::make_shared<bool>(false);
   verb->add_flag("--no-picture", *no_picture, "Draw no contact sheet at the end");
+  auto export_format = std::make_shared<std::string>();
+  verb->add_option("--export", *export_format,
+                   "Export all frames, those that are there first, into DIR/FORMAT, as `taut export` does afterwards")
+      ->type_name("FORMAT")
+      ->check(CLI::IsMember(export_format_names()));
   verb->footer("Example: taut resume out/ball");
-  verb->callback([=, &exit_code] { exit_code = resume(*folder, *threads, *quiet, !*no_picture); });
+  verb->callback([=, &exit_code] { exit_code = resume(*folder, *threads, *quiet, !*no_picture, *export_format); });
 }
 
 }  // namespace taut::app

@@ -10,7 +10,7 @@ namespace taut::app {
 namespace {
 
 struct RunArguments {
-  std::string scene, out, solver;
+  std::string scene, out, solver, export_format;
   int frames = -1, threads = 0;
   std::vector<std::string> settings;
   bool quiet = false, json_lines = false, no_picture = false;
@@ -31,7 +31,7 @@ int run_scene(const RunArguments& arguments) {
                                                     : std::filesystem::path(arguments.out));
   Simulation simulation(std::move(scene));
   results.start(simulation);
-  return simulate(simulation, results, {style, !arguments.no_picture}, 0);
+  return simulate(simulation, results, {style, !arguments.no_picture, arguments.export_format}, 0);
 }
 
 }  // namespace
@@ -51,6 +51,9 @@ void add_run_verb(CLI::App& app, int& exit_code) {
   verb->add_flag("--quiet", arguments->quiet, "No progress and no table");
   verb->add_flag("--json-lines", arguments->json_lines, "Progress as one JSON object a step on stdout");
   verb->add_flag("--no-picture", arguments->no_picture, "Draw no contact sheet at the end");
+  verb->add_option("--export", arguments->export_format, "Export the frames as they come into OUT/FORMAT, as `taut export` does afterwards")
+      ->type_name("FORMAT")
+      ->check(CLI::IsMember(export_format_names()));
   verb->footer(
       "Example: taut run scenes/ball.toml --set cloth.grid.nodes=[41,41] --out out/small\n"
       "Ctrl-C stops after the current step with everything so far valid; `taut resume DIR` goes on.");

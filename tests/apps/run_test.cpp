@@ -1,4 +1,4 @@
-// taut run, resume, check, export: exact file names and columns, exit codes, where messages go, interruption.
+// taut run, resume, check: exact file names and columns, exit codes, where messages go, interruption.
 
 #include <gtest/gtest.h>
 
@@ -110,7 +110,9 @@ class Interrupted : public testing::Test {
     }
     return made;
   }
-  static Names run_into(const std::string& out) { return {"run", "small.toml", "--frames", "120", "--quiet", "--no-picture", "--out", out}; }
+  static Names run_into(const std::string& out) {
+    return {"run", "small.toml", "--frames", "120", "--quiet", "--no-picture", "--out", out};
+  }
 
   // Starts a run and sends a signal when some frames are there.
   ProgramEnd run_and_signal(int signal) const {
@@ -191,22 +193,6 @@ TEST(Check, TellsErrorsFromDoubtsAndWritesNothing) {
   EXPECT_EQ(bad.out, "");
   EXPECT_NE(bad.err.find("step"), std::string::npos);
   EXPECT_FALSE(std::filesystem::exists(folder / "out"));
-}
-
-TEST(Export, WritesObjAndPointCaches) {
-  const WorkFolder folder;
-  folder.file("small.toml", small_scene());
-  ASSERT_EQ(taut(folder, {"run", "small.toml", "--out", "r", "--frames", "2", "--quiet", "--no-picture"}).exit_code, 0);
-  ASSERT_EQ(taut(folder, {"export", "r", "--format", "obj"}).exit_code, 0);
-  EXPECT_EQ(names_in(folder / "r/obj"), (Names{"sheet_000000.obj", "sheet_000001.obj", "sheet_000002.obj"}));
-  const Names obj = lines_of(read_text(folder / "r/obj/sheet_000002.obj"));
-  EXPECT_EQ(std::ranges::count_if(obj, [](const std::string& line) { return line.starts_with("v "); }), 72);
-  EXPECT_EQ(std::ranges::count_if(obj, [](const std::string& line) { return line.starts_with("f "); }), 2 * 8 * 7);
-  ASSERT_EQ(taut(folder, {"export", "r", "--format", "pc2", "--out", "points"}).exit_code, 0);
-  EXPECT_EQ(names_in(folder / "points"), (Names{"sheet.obj", "sheet.pc2"}));
-  EXPECT_EQ(read_text(folder / "points/sheet.pc2").size(), 32u + 3 * 72 * 12);
-  EXPECT_EQ(taut(folder, {"export", "r", "--format", "gif"}).exit_code, 2);
-  EXPECT_EQ(taut(folder, {"export", "nothing", "--format", "obj"}).exit_code, 1);
 }
 
 }  // namespace

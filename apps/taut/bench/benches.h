@@ -55,6 +55,7 @@ struct RooflineRow {
   std::string phase, precision;
   double flops = 0.0, bytes = 0.0;  // 0: not counted
   double milliseconds = 0.0;
+  double read_GB_per_s = 0.0;  // of an array of as many bytes
 };
 // Each phase's rate against what the machine can do at best. `options.nodes`: 1681, 6561, 25921, 103041 or 263169; empty: the first three.
 nlohmann::ordered_json bench_roofline(const BenchOptions& options, const MachineFacts& machine);

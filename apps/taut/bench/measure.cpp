@@ -38,7 +38,7 @@ bool keeps_analysis(const Method& method) {
 struct Bench {
   Cell cell;
   std::unique_ptr<ConstrainedSolver> solver;
-  std::vector<double> totals, steps;         // ms, a step each
+  std::map<int, double> totals, steps;       // ms, by step
   int errors = 0;                            // steps at which the error was measured
   double last_error = 0.0;                   // in the A-norm, of the step measured last
   std::map<int, double> equal_error_totals;  // by step
@@ -71,10 +71,10 @@ class Campaign {
       stepper.begin(state, h);
       const double rho = stepper.remainder_ratio();
       for (Bench& bench : benches_)
-        if (bench.cell.method.integrator == assembly.kind) measure_method(bench, stepper, rho);
+        if (bench.cell.method.integrator == assembly.kind && step_ % bench.cell.method.every == 0) measure_method(bench, stepper, rho);
       if (options_.equal_error_every > 0 && step_ % options_.equal_error_every == 0)
         for (Bench& bench : benches_)
-          if (bench.cell.method.integrator == assembly.kind) measure_equal_error(bench, stepper);
+          if (bench.cell.method.integrator == assembly.kind && bench.totals.count(step_)) measure_equal_error(bench, stepper);
     }
     ++step_;
   }
@@ -91,12 +91,9 @@ class Campaign {
       if (equal > 0) c.equal_error_ms /= equal, c.equal_error_iterations /= equal;
       if (const Bench* reference = reference_of(c.method.integrator)) {
         std::vector<double> ratios, step_ratios, equal_ratios;
-        for (std::size_t s = 0; s < bench.totals.size(); ++s) {
-          ratios.push_back(bench.totals[s] / reference->totals[s]);
-          step_ratios.push_back(bench.steps[s] / reference->steps[s]);
-        }
-        for (const auto& [step, total] : bench.equal_error_totals)
-          equal_ratios.push_back(total / reference->totals[static_cast<std::size_t>(step)]);
+        for (const auto& [step, total] : bench.totals) ratios.push_back(total / reference->totals.at(step));
+        for (const auto& [step, total] : bench.steps) step_ratios.push_back(total / reference->steps.at(step));
+        for (const auto& [step, total] : bench.equal_error_totals) equal_ratios.push_back(total / reference->totals.at(step));
         c.ratio = median(ratios), c.step_ratio = median(step_ratios), c.equal_error_ratio = median(equal_ratios);
       }
       result.push_back(c);
@@ -164,8 +161,8 @@ class Campaign {
     c.nonzeros = static_cast<double>(nonzeros_of(c.method, stepper, *system.constraints));
     if (c.method.solver.starts_with("core_pcg") || c.method.solver == "core_fast")
       c.bound_iterations = std::max(0.0, c.bound_iterations) + core_iteration_bound(rho, s.start_value, options_.tolerance);
-    bench.totals.push_back(s.total_ms());
-    bench.steps.push_back(s.total_ms() + stepper.assemble_ms());
+    bench.totals[step_] = s.total_ms();
+    bench.steps[step_] = s.total_ms() + stepper.assemble_ms();
   }
 
   static Offset nonzeros_of(const Method& method, const Stepper& stepper, const ConstraintSet& constraints) {
@@ -190,13 +187,14 @@ class Campaign {
     const LinearSystem system = stepper.system();
     if (method_hides_iterates(method) && bench.last_error > options_.equal_error) return;
     if (bench.cell.iterations == 0.0 || method_hides_iterates(method)) {  // direct: what was measured is exact
-      bench.equal_error_totals[step_] = bench.totals.back();
-      bench.cell.equal_error_ms += bench.totals.back();
+      bench.equal_error_totals[step_] = bench.totals.at(step_);
+      bench.cell.equal_error_ms += bench.totals.at(step_);
       return;
     }
     int needed = -1;
     std::vector<double> x(system.rhs.size());
-    for (double tolerance = options_.tolerance; needed < 0 && tolerance > 1e-13; tolerance *= 1e-2) {
+    const double first_tolerance = options_.tolerance * (bench.last_error > options_.equal_error ? 1e-2 : 1.0);
+    for (double tolerance = first_tolerance; needed < 0 && tolerance > 1e-13; tolerance *= 1e-2) {
       const auto search = make_solver(solver_options(method, tolerance, 0));
       search->observer = [&](int iteration, double, std::span<const double> iterate) {
         // Where there are many, the error is looked at every fifth: it takes a product.

@@ -17,6 +17,7 @@ struct Method {
   std::string solver;
   IntegratorKind integrator = IntegratorKind::semi_implicit_euler;
   std::string reordering = "vectors";
+  int every = 1;  // measured in every so many steps
   std::string label() const { return reordering == "matrix" ? solver + " (matrix reordered)" : solver; }
 };
 

@@ -115,7 +115,7 @@ class Phases {
   }
 
   void add(std::string phase, double flops, double bytes, const char* precision, double milliseconds) {
-    rows_.push_back({simulation_.cloth().nodes(), std::move(phase), precision, flops, bytes, milliseconds});
+    rows_.push_back({simulation_.cloth().nodes(), std::move(phase), precision, flops, bytes, milliseconds, bytes > 0.0 ? read_rate(bytes) : 0.0});
   }
 
   Simulation& simulation_;
@@ -136,7 +136,8 @@ nlohmann::ordered_json to_json(const RooflineRow& r, const PeakRates& peak, cons
     const double rate = r.bytes / r.milliseconds / 1e6;
     json["bytes"] = r.bytes;
     json["GB_per_s"] = rate;
-    json["share_of_bandwidth"] = rate / machine.read_GB_per_s;
+    json["share_of_bandwidth"] = rate / r.read_GB_per_s;
+    json["read_GB_per_s"] = r.read_GB_per_s;
   }
   return json;
 }
@@ -166,13 +167,13 @@ nlohmann::ordered_json bench_roofline(const BenchOptions& options, const Machine
       const double flop_rate = r.flops / r.milliseconds / 1e6, byte_rate = r.bytes / r.milliseconds / 1e6;
       table.add({std::to_string(r.nodes), r.phase, r.precision, fmt::format("{:.3f}", r.milliseconds), fmt::format("{:.1f}", r.flops / 1e6), fmt::format("{:.1f}", r.bytes / 1e6),
                  fmt::format("{:.1f}", flop_rate), share(flop_rate, r.precision == "single" ? peak.single_GF_per_s : peak.double_GF_per_s), fmt::format("{:.1f}", byte_rate),
-                 share(byte_rate, machine.read_GB_per_s)});
+                 share(byte_rate, r.read_GB_per_s)});
       json["rows"].push_back(to_json(r, peak, machine));
     }
     fmt::print("{}\n", table.text());
     std::fflush(stdout);
   }
-  fmt::print("Medians of {} (CHOLMOD: 3) on the first state in contact. Bytes: what must be read or written at least. Flops of the factor: those of its entries, without padding.\n", repetitions);
+  fmt::print("Medians of {} (CHOLMOD: 3) on the first state in contact. Bytes: what must be read or written at least; \"of reading\": of the rate at which an array of as many bytes is\nread again and again, from a cache where it fits. Flops of the factor: those of its entries, without padding.\n", repetitions);
   return json;
 }
 

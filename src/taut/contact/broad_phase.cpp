@@ -49,6 +49,10 @@ std::vector<Index> all_vertices(const CollisionSurface& surface) {
 struct BroadPhase::Trees {
   std::vector<Box> boxes;  // of vertices
   BoxTree vertices, edges, triangles;
+  // Lists of the parts of a query.
+  std::vector<std::vector<VertexTriangle>> vertex_triangle;
+  std::vector<std::vector<EdgeEdge>> edge_edge;
+  std::vector<std::vector<EdgeTriangle>> edge_triangle;
 
   Trees(const CollisionSurface& surface, std::span<const Vec3> positions)
       : boxes(static_cast<std::size_t>(surface.vertices)),
@@ -73,20 +77,20 @@ void BroadPhase::refit(std::span<const Vec3> x0, std::span<const Vec3> x1, doubl
   trees.triangles.refit(trees.boxes);
 }
 
-void BroadPhase::find_vertex_triangle(std::vector<VertexTriangle>& pairs, std::span<const std::uint8_t> moved) const {
-  detail::query<1, 3>(trees_->vertices, trees_->triangles, moved, pairs, [](Index vertex, Index triangle) {
+void BroadPhase::find_vertex_triangle(std::vector<VertexTriangle>& pairs, std::span<const std::uint8_t> moved) {
+  detail::query<1, 3>(trees_->vertices, trees_->triangles, moved, trees_->vertex_triangle, pairs, [](Index vertex, Index triangle) {
     return VertexTriangle{vertex, triangle};
   });
 }
 
-void BroadPhase::find_edge_edge(std::vector<EdgeEdge>& pairs, std::span<const std::uint8_t> moved) const {
-  detail::query<2, 2>(trees_->edges, trees_->edges, moved, pairs, [](Index a, Index b) {
+void BroadPhase::find_edge_edge(std::vector<EdgeEdge>& pairs, std::span<const std::uint8_t> moved) {
+  detail::query<2, 2>(trees_->edges, trees_->edges, moved, trees_->edge_edge, pairs, [](Index a, Index b) {
     return EdgeEdge{std::min(a, b), std::max(a, b)};
   });
 }
 
-void BroadPhase::find_edge_triangle(std::vector<EdgeTriangle>& pairs, std::span<const std::uint8_t> moved) const {
-  detail::query<2, 3>(trees_->edges, trees_->triangles, moved, pairs, [](Index edge, Index triangle) {
+void BroadPhase::find_edge_triangle(std::vector<EdgeTriangle>& pairs, std::span<const std::uint8_t> moved) {
+  detail::query<2, 3>(trees_->edges, trees_->triangles, moved, trees_->edge_triangle, pairs, [](Index edge, Index triangle) {
     return EdgeTriangle{edge, triangle};
   });
 }

@@ -1,17 +1,17 @@
 #pragma once
 // Broad phase: which vertices, edges and triangles of a surface may come near each other in a step.
 //
-//   swept box   of a vertex, an edge or a triangle: the smallest box around where its corners are at x0 and at x1 (m). Straight paths stay
-//   inside margin      m: every pair whose swept boxes are at most `margin` apart along each axis is reported; so every pair that is ever
-//   within `margin`
-//               of each other during the step (the reverse does not hold)
+//   swept box   of a vertex, an edge or a triangle: the smallest box around where its corners are at x0 and at x1 (m). Straight paths
+//               stay inside
+//   margin      m: every pair whose swept boxes are at most `margin` apart along each axis is reported; so every pair that is ever
+//               within `margin` of each other during the step (the reverse does not hold)
 //
 // Left out: pairs that share a vertex; pairs with both sides on solids; where `moved` is given, pairs without a vertex marked in it.
 // Each remaining pair is reported once. Lists come in an order that depends on the surface and the positions, not on the number of threads.
 //
 // Method: one packed tree of eight children a node for vertices, edges and triangles each, ordered once by halving the positions given to
 // the constructor. Boxes are stored as floats, rounded outwards. refit is O(n) and moves no node; a query takes groups of eight through a
-// tree.
+// tree. One call at a time: queries use memory that they keep.
 
 #include <cstdint>
 #include <memory>
@@ -49,9 +49,9 @@ class BroadPhase {
   void refit(std::span<const Vec3> x0, std::span<const Vec3> x1, double margin);
 
   // Replace `pairs`. moved: empty for all pairs, or one byte a vertex, not 0 where it moved.
-  void find_vertex_triangle(std::vector<VertexTriangle>& pairs, std::span<const std::uint8_t> moved = {}) const;
-  void find_edge_edge(std::vector<EdgeEdge>& pairs, std::span<const std::uint8_t> moved = {}) const;
-  void find_edge_triangle(std::vector<EdgeTriangle>& pairs, std::span<const std::uint8_t> moved = {}) const;
+  void find_vertex_triangle(std::vector<VertexTriangle>& pairs, std::span<const std::uint8_t> moved = {});
+  void find_edge_edge(std::vector<EdgeEdge>& pairs, std::span<const std::uint8_t> moved = {});
+  void find_edge_triangle(std::vector<EdgeTriangle>& pairs, std::span<const std::uint8_t> moved = {});
 
   const CollisionSurface& surface() const { return *surface_; }
 

@@ -1,8 +1,8 @@
 #pragma once
 // Taut's own intersection check: all pairs of an edge and a triangle without a common vertex that meet, decided exactly.
 //
-//   meet      the closed edge and the closed triangle have a point in common: crossing, touching, lying in one plane and overlapping all
-//   count touching  they meet, but some corner lies exactly in the other's plane or line: moved by however little they may come apart
+//   meet      the closed edge and the closed triangle have a point in common: crossing, touching, overlapping in one plane all count
+//   touching  they meet, but some corner lies exactly in the other's plane or line: moved by however little they may come apart
 //
 // Two triangles that share no vertex intersect exactly if an edge of one meets the other. Decisions are signs of determinants of the given
 // doubles: a floating-point value where its error bound leaves no doubt, else exact expansion arithmetic (J. R. Shewchuk, "Adaptive

@@ -6,9 +6,8 @@
 //
 //   distance     m
 //   normal       unit vector from q to p (to r), orthogonal to the side or the face that q lies in (to both edges where both points are
-//   inner
-//                ones) even where p - q is lost in rounding. Where the distance is 0: the triangle's normal (b - a) x (c - a), the edges'
-//                (b - a) x (d - c); of shapes that have none, any unit vector orthogonal to the side. Never NaN
+//                inner ones) even where p - q is lost in rounding. Where the distance is 0: the triangle's normal (b - a) x (c - a), the
+//                edges' (b - a) x (d - c); of shapes that have none, any unit vector orthogonal to the side. Never NaN
 //
 // Finite input is assumed; nothing is thrown. Triangles and pairs of edges with an angle below 1e-8 count as degenerate (as parallel): the
 // closest pair with a side (with a corner) is then taken, which is off by less than 1e-8 of their size. Edges may have no length.

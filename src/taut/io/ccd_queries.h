@@ -1,10 +1,12 @@
 #pragma once
 // Files of continuous-collision queries, in the form of the data sets of Wang et al. 2021 (contact/ccd.h).
 //
-//   eight rows a query         x y z of its corners: four at t = 0, then the same four at t = 1
-//   a row                      x_num,x_den,y_num,y_den,z_num,z_den[,truth]      x = x_num / x_den, m, rounded to the nearest double where
-//   it is none vertex and triangle        p, a, b, c;     two edges: a, b (the first), c, d (the second) truth                      1 where
-//   the two meet, else 0; the same in all rows of a query, and in all queries or in none
+//   eight rows a query    x y z of its corners: four at t = 0, then the same four at t = 1
+//   a row                 x_num,x_den,y_num,y_den,z_num,z_den[,truth]
+//   x_num, x_den          x = x_num / x_den, m, divided as doubles: exact where x is a double and x_den a power of two
+//   vf                    a vertex p, then its triangle's a, b, c
+//   ee                    two edges: a, b, then c, d
+//   truth                 1 where the two meet, else 0; the same in all rows of a query, and in all queries or in none
 //
 // Numbers are decimal with any number of digits. Empty lines are passed over. gzip is unpacked.
 

@@ -1,5 +1,5 @@
 #pragma once
-// Numbers as little-endian bytes, the order of .npy and .pc2 files, on any machine.
+// Numbers as little-endian bytes, the order of .npy, .pc2, .ply and .glb files, on any machine; big-endian for .mdd files.
 
 #include <algorithm>
 #include <bit>
@@ -20,6 +20,23 @@ void append_little_endian(std::string& bytes, T value) {
   std::memcpy(raw, &value, sizeof(T));
   swap_if_big_endian(raw, sizeof(T), 1);
   bytes.append(raw, sizeof(T));
+}
+
+template <class T>
+void append_big_endian(std::string& bytes, T value) {
+  append_little_endian(bytes, value);
+  std::reverse(bytes.end() - sizeof(T), bytes.end());
+}
+
+// The value whose bytes begin at `bytes`.
+template <class T>
+T read_little_endian(const char* bytes) {
+  char raw[sizeof(T)];
+  std::memcpy(raw, bytes, sizeof(T));
+  swap_if_big_endian(raw, sizeof(T), 1);
+  T value;
+  std::memcpy(&value, raw, sizeof(T));
+  return value;
 }
 
 }  // namespace taut

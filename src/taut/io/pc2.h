@@ -6,17 +6,35 @@
 //
 // sample_rate = frames between two samples (1: a sample a frame). Source: the 3ds Max PC2 format as Blender's Mesh Cache reads it.
 //
-// Samples go to a temporary file beside `path` as they come; finish() fills in their number and renames it, so a reader never sees half a
-// cache. A writer that is destroyed before finish() removes the temporary file. Throws InputError naming the file when it cannot be
+// Written: samples go to a temporary file beside `path` as they come; finish() fills in their number and renames it, so a reader never sees
+// half a cache. A writer that is destroyed before finish() removes the temporary file. Throws InputError naming the file when it cannot be
 // written.
+//
+// Read: all samples at once, 24 bytes a point and sample. Throws InputError naming the file, and sample and point where there is one, when
+// it is no PC2 file of version 1, is shorter or longer than its header says, holds no point or no sample, a sample_rate that is not
+// positive, or a coordinate that is not finite; memory is bounded by the file's size.
 
 #include <filesystem>
 #include <fstream>
 #include <span>
+#include <vector>
 
 #include "taut/base/types.h"
 
 namespace taut {
+
+struct PointCache {
+  Index points = 0;
+  double start_frame = 0.0;
+  double sample_rate = 1.0;
+  std::vector<Vec3> positions;  // m, sample after sample, `points` each
+  Index samples() const { return static_cast<Index>(positions.size() / static_cast<std::size_t>(points)); }
+  std::span<const Vec3> sample(Index k) const {
+    return std::span(positions).subspan(static_cast<std::size_t>(k) * static_cast<std::size_t>(points), static_cast<std::size_t>(points));
+  }
+};
+
+PointCache read_pc2(const std::filesystem::path& path);
 
 class Pc2Writer {
  public:

@@ -59,10 +59,14 @@ std::string unpack(const std::string& file, const std::string& packed) {
 
 }  // namespace
 
+std::string read_unpacked_file(const std::filesystem::path& path) {
+  std::string bytes = read_file(path);
+  return starts_with(bytes, "\x1f\x8b") ? unpack(path.string(), bytes) : bytes;
+}
+
 std::string read_text_file(const std::filesystem::path& path) {
   const std::string file = path.string();
-  std::string text = read_file(path);
-  if (starts_with(text, "\x1f\x8b")) text = unpack(file, text);
+  std::string text = read_unpacked_file(path);
   if (starts_with(text, "\xfe\xff") || starts_with(text, "\xff\xfe") || starts_with(text, std::string_view("\0\0\xfe\xff", 4)))
     throw InputError({file, 1}, "is UTF-16 or UTF-32 text, UTF-8 was expected; save it as UTF-8 (iconv -f UTF-16 -t UTF-8)");
   const std::size_t zero = text.find('\0');

@@ -10,4 +10,7 @@ namespace taut {
 // Throws InputError when it cannot be read, does not unpack, is UTF-16 or UTF-32, or holds a zero byte (so it is not text).
 std::string read_text_file(const std::filesystem::path& path);
 
+// The whole file as bytes, unpacked when it is gzip. Throws InputError when it cannot be read or does not unpack.
+std::string read_unpacked_file(const std::filesystem::path& path);
+
 }  // namespace taut

@@ -4,8 +4,8 @@
 #include "taut/io/obj.h"
 #include "taut/picture/contact_sheet.h"
 #include "taut/picture/render.h"
-#include "taut/picture/solid_mesh.h"
 #include "taut/scene/run.h"
+#include "taut/scene/solid_shapes.h"
 
 namespace taut {
 
@@ -20,40 +20,6 @@ std::vector<int> chosen_frames(int count) {
   std::vector<int> frames;
   for (int t = 0; t < tiles; ++t) frames.push_back(tiles == 1 ? 0 : t * (count - 1) / (tiles - 1));
   return frames;
-}
-
-Isometry isometry(const Pose& pose) {
-  Isometry result = Isometry::Identity();
-  result.translate(pose.translation);
-  result.rotate(pose.rotation);
-  return result;
-}
-
-SolidMesh mesh_of(const Solid& solid, double time) {
-  const Isometry pose = isometry(solid.pose(time));
-  switch (solid.shape) {
-    case SolidShape::sphere: return make_sphere_mesh(solid.radius, pose);
-    case SolidShape::plane: return make_disc_mesh(3.0, pose);
-    case SolidShape::cylinder: return make_cylinder_mesh(solid.radius, solid.height, pose);
-    case SolidShape::box: return make_box_mesh(solid.size, pose);
-    case SolidShape::mesh: break;
-  }
-  return {};
-}
-
-SolidMesh mesh_of(const MeshSolid& solid, double time) {
-  SolidMesh drawn;
-  drawn.mesh.positions.resize(static_cast<std::size_t>(solid.vertices()));
-  drawn.mesh.triangles = solid.triangles();
-  solid.positions(time, drawn.mesh.positions);
-  drawn.normals.assign(drawn.mesh.positions.size(), Vec3::Zero());
-  for (const Triangle& t : drawn.mesh.triangles) {
-    const auto& x = drawn.mesh.positions;
-    const Vec3 normal = (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]);
-    for (const Index vertex : t) drawn.normals[vertex] += normal;
-  }
-  for (Vec3& n : drawn.normals) n = n.norm() > 0.0 ? Vec3(n.normalized()) : Vec3::UnitZ();
-  return drawn;
 }
 
 // A flat patch in cloth coordinates of about 5 cm, so that stretch shows.

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "taut/base/error.h"
+#include "taut/io/mesh_file.h"
 #include "taut/io/motion_file.h"
-#include "taut/io/obj.h"
 #include "taut/mesh/topology.h"
 
 namespace taut {
@@ -25,7 +25,7 @@ std::filesystem::path found(const std::filesystem::path& path, const std::filesy
 
 }  // namespace
 
-MeshSolid::MeshSolid(const Solid& solid, const std::filesystem::path& folder) : solid_(solid), mesh_(read_obj(found(solid.mesh, folder))) {
+MeshSolid::MeshSolid(const Solid& solid, const std::filesystem::path& folder) : solid_(solid), mesh_(read_mesh(found(solid.mesh, folder))) {
   const MeshFaults faults = find_faults(mesh_);
   for (const Index triangle : faults.repeated_vertex)
     throw InputError({found(solid.mesh, folder).string()}, "triangle " + std::to_string(triangle + 1) + " names a vertex twice; remove it");

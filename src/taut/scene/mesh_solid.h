@@ -12,7 +12,7 @@ namespace taut {
 
 class MeshSolid {
  public:
-  // Reads the files. Throws InputError as read_obj and read_motion, and for a mesh without triangles of some area.
+  // Reads the files. Throws InputError as read_mesh and read_motion, and for a triangle that names a vertex twice.
   MeshSolid(const Solid& solid, const std::filesystem::path& folder);
 
   const Solid& solid() const { return solid_; }

@@ -48,7 +48,7 @@ void describe_solid(SchemaVisitor& v, Solid& solid) {
   const bool mesh = solid.shape == SolidShape::mesh;
   constexpr const char* mesh_only = "a mesh";
   v.file("mesh", solid.mesh,
-         {.doc = "OBJ file, relative to the scene file; closed or open, cloth stays on the side where it starts",
+         {.doc = "OBJ or PLY file, relative to the scene file; closed or open, cloth stays on the side where it starts",
           .required = true,
           .applies = mesh,
           .only_for = mesh_only});

@@ -1,9 +1,8 @@
 #pragma once
 // The planes of contact/ccd.h, for one pair: see there for why they miss nothing.
 //
-//   D_k(t) = (1 - t) D_k^0 + t D_k^1, k = 0 ... 3     differences of corners of the two shapes, m; a vertex and a triangle have three: the
-//   last is
-//                                                     given twice
+//   D_k(t) = (1 - t) D_k^0 + t D_k^1, k = 0 ... 3     differences of corners of the two shapes, m; a vertex and a triangle have
+//                                                     three: the last is given twice
 //
 // Four lanes side by side, one a difference. Private to contact.
 
@@ -67,20 +66,28 @@ class SeparatingPlanes {
   // r, or if n is not of length 1 to 1e-12.
   double separated_until(const Vec3& n, double r, double separation) const {
     if (!(n.squaredNorm() < 1.0 + length_bound)) return -1.0;
-    const Lanes at_start = n[0] * start_[0] + n[1] * start_[1] + n[2] * start_[2];
-    const Lanes at_end = n[0] * end_[0] + n[1] * end_[1] + n[2] * end_[2];
+    double at_start[4], at_end[4];
+    for (int k = 0; k < 4; ++k) {
+      at_start[k] = n[0] * start_[0][k] + n[1] * start_[1][k] + n[2] * start_[2][k];
+      at_end[k] = n[0] * end_[0][k] + n[1] * end_[1][k] + n[2] * end_[2][k];
+    }
     const double rounding = rounding_bound * size(n.data()) + length_bound * separation + underflow_bound;
     const double needed = separation + rounding;
-    if (!(least((1.0 - r) * at_start + r * at_end) > needed)) return -1.0;
+    if (!(least_at(at_start, at_end, r) > needed)) return -1.0;
     // Aims a little above what is needed, so that the rounding of s itself does not spoil the test.
     double s = 1.0;
     for (int k = 0; k < 4; ++k)
       if (!(at_end[k] > needed)) s = std::min(s, (at_start[k] - needed - rounding) / (at_start[k] - at_end[k]));
     if (!(s > r)) return r;
-    return least((1.0 - s) * at_start + s * at_end) > needed ? s : r;
+    return least_at(at_start, at_end, s) > needed ? s : r;
   }
 
  private:
+  static double least_at(const double (&at_start)[4], const double (&at_end)[4], double t) {
+    double value[4];
+    for (int k = 0; k < 4; ++k) value[k] = (1.0 - t) * at_start[k] + t * at_end[k];
+    return std::min(std::min(value[0], value[1]), std::min(value[2], value[3]));
+  }
   static TAUT_ALWAYS_INLINE double least(const Lanes& a) { return std::min(std::min(a[0], a[1]), std::min(a[2], a[3])); }
   static TAUT_ALWAYS_INLINE double most(const Lanes& a) { return std::max(std::max(a[0], a[1]), std::max(a[2], a[3])); }
   static TAUT_ALWAYS_INLINE double sum(const Lanes& a) { return (a[0] + a[1]) + (a[2] + a[3]); }

@@ -101,18 +101,20 @@ class TreeQuery {
   LevelMasks moved_first_, moved_second_;
 };
 
+// found: one list a chunk, kept by the caller so that their memory is used again.
 template <int first_corners, int second_corners, class Pair, class MakePair>
-void query(const BoxTree& first, const BoxTree& second, std::span<const std::uint8_t> moved, std::vector<Pair>& pairs,
-           const MakePair& make_pair) {
+void query(const BoxTree& first, const BoxTree& second, std::span<const std::uint8_t> moved, std::vector<std::vector<Pair>>& found,
+           std::vector<Pair>& pairs, const MakePair& make_pair) {
   pairs.clear();
   if (first.items() == 0 || second.items() == 0) return;
-  constexpr Index groups_per_chunk = 16;
+  constexpr Index groups_per_chunk = 32;
   const TreeQuery<first_corners, second_corners, Pair, MakePair> tree_query(first, second, moved, make_pair);
   const Index chunks = (first.groups() + groups_per_chunk - 1) / groups_per_chunk;
-  std::vector<std::vector<Pair>> found(static_cast<std::size_t>(chunks));
+  found.resize(static_cast<std::size_t>(chunks));
   parallel_for(chunks, 1, [&](Index begin, Index end) {
     for (Index k = begin; k < end; ++k) {
       const Index c = strided(k, chunks);
+      found[c].clear();
       for (Index q = c * groups_per_chunk; q < std::min(first.groups(), (c + 1) * groups_per_chunk); ++q) tree_query.run(q, found[c]);
     }
   });

@@ -1,0 +1,21 @@
+#include "taut/io/mesh_file.h"
+
+#include <algorithm>
+
+#include "taut/base/error.h"
+#include "taut/io/obj.h"
+#include "taut/io/ply.h"
+
+namespace taut {
+
+TriangleMesh read_mesh(const std::filesystem::path& path, std::vector<std::string>* notes) {
+  const std::filesystem::path name = path.extension() == ".gz" ? path.stem() : path.filename();
+  std::string extension = name.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+  if (extension == ".obj") return read_obj(path, notes);
+  if (extension == ".ply") return read_ply(path, notes);
+  throw InputError({path.string()}, "is no mesh file that Taut reads; .obj or .ply was expected (also .gz after it)");
+}
+
+}  // namespace taut
