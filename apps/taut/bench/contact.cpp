@@ -74,7 +74,7 @@ struct Experiment {
 
 void measure(const Experiment& e, const BenchOptions& options, TextTable& table, Json& rows) {
   const int side = options.nodes.empty() ? e.k_nodes : side_of(options.nodes.front());
-  std::vector<std::string> settings{fmt::format("cloth.grid.nodes=[{0},{0}]", side)};
+  std::vector<std::string> settings{fmt::format("cloth.grid.nodes=[{0},{0}]", side), "solver.name=auto"};
   if (e.step > 0.0) settings.push_back(fmt::format("time.step={}", e.step));
   Simulation simulation(read_scene(fmt::format("{}/{}.toml", options.scenes, e.scene), settings));
   StepRecord record;

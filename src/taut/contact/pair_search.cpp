@@ -10,33 +10,48 @@ namespace {
 
 constexpr Index chunk = 2048;  // pairs handled by one task
 
-// A plane across the line between the middles, that keeps all corners further apart than `distance`, settles most pairs cheaply.
-bool surely_apart(const CollisionPair& pair, std::span<const Vec3> x, double distance) {
-  const Vec3 &a = x[pair.node[0]], &b = x[pair.node[1]], &c = x[pair.node[2]], &d = x[pair.node[3]];
-  if (pair.edges) {
-    const Vec3 n = (a + b) - (c + d);
-    return std::min(n.dot(a), n.dot(b)) - std::max(n.dot(c), n.dot(d)) > distance * n.norm();
-  }
-  const Vec3 n = 3.0 * a - (b + c + d);
-  return n.dot(a) - std::max({n.dot(b), n.dot(c), n.dot(d)}) > distance * n.norm();
+// The plane across the line between the middles at x0: does it keep all corners further apart than `distance` at x0, and at x1 too? What is
+// linear in between is then clear on the whole way, by far more than rounding.
+struct Clearance {
+  bool at_start = false, throughout = false;
+};
+
+Clearance clearance(const CollisionPair& pair, std::span<const Vec3> x0, std::span<const Vec3> x1, double distance) {
+  const auto& k = pair.node;
+  const Vec3 n = pair.edges ? Vec3((x0[k[0]] + x0[k[1]]) - (x0[k[2]] + x0[k[3]])) : Vec3(3.0 * x0[k[0]] - (x0[k[1]] + x0[k[2]] + x0[k[3]]));
+  const double least = distance * n.norm();
+  const auto separates = [&](std::span<const Vec3> x) {
+    // Relative to the first corner: the error is then one of the pair's size, not of its place.
+    const Vec3& a = x[k[0]];
+    const double b = n.dot(x[k[1]] - a), c = n.dot(x[k[2]] - a), d = n.dot(x[k[3]] - a);
+    return (pair.edges ? std::min(0.0, b) - std::max(c, d) : -std::max({b, c, d})) > least;
+  };
+  if (!separates(x0)) return {};
+  return {true, separates(x1)};
 }
 
 }  // namespace
 
 template <class Pair>
-void PairSearch::add_near(const std::vector<Pair>& pairs, std::span<const Vec3> x, double largest,
+void PairSearch::add_near(std::vector<Pair>& pairs, std::span<const Vec3> x0, std::span<const Vec3> x1, double largest,
                           const std::function<double(const CollisionPair&)>& thickness, std::vector<NearPair>& near) {
   const Index count = static_cast<Index>(pairs.size()), chunks = (count + chunk - 1) / chunk;
   std::vector<std::vector<NearPair>> found(static_cast<std::size_t>(chunks));
+  std::vector<std::vector<Pair>> kept(static_cast<std::size_t>(chunks));
   parallel_for(chunks, 1, [&](Index begin, Index end) {
     for (Index c = begin; c < end; ++c)
       for (Index k = c * chunk; k < std::min(count, (c + 1) * chunk); ++k) {
         const CollisionPair pair = pair_of(broad_phase_.surface(), pairs[k]);
-        if (surely_apart(pair, x, largest)) continue;
-        const NearPair candidate{pair, closest(pair, x)};
+        const Clearance clear = clearance(pair, x0, x1, largest);
+        if (clear.throughout) continue;
+        kept[c].push_back(pairs[k]);
+        if (clear.at_start) continue;
+        const NearPair candidate{pair, closest(pair, x0)};
         if (candidate.proximity.inside && candidate.proximity.distance < thickness(candidate.pair)) found[c].push_back(candidate);
       }
   });
+  pairs.clear();
+  for (const auto& part : kept) pairs.insert(pairs.end(), part.begin(), part.end());
   for (const auto& part : found) near.insert(near.end(), part.begin(), part.end());
 }
 
@@ -47,8 +62,8 @@ std::vector<NearPair> PairSearch::near(std::span<const Vec3> x0, std::span<const
   broad_phase_.find_edge_edge(edge_edge_);
   tested_ += std::ssize(vertex_triangle_) + std::ssize(edge_edge_);
   std::vector<NearPair> near;
-  add_near(vertex_triangle_, x0, largest, thickness, near);
-  add_near(edge_edge_, x0, largest, thickness, near);
+  add_near(vertex_triangle_, x0, x1, largest, thickness, near);
+  add_near(edge_edge_, x0, x1, largest, thickness, near);
   return near;
 }
 

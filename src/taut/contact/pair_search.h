@@ -23,7 +23,8 @@ class PairSearch {
  public:
   PairSearch(const CollisionSurface& surface, std::span<const Vec3> start) : broad_phase_(surface, start) {}
 
-  // Pairs closer than thickness(pair) <= largest (m) at x0. The broad phase is made for the whole way to x1.
+  // Pairs closer than thickness(pair) <= largest (m) at x0. The broad phase is made for the whole way to x1, and what a plane keeps further
+  // apart than `largest` throughout is left out.
   std::vector<NearPair> near(std::span<const Vec3> x0, std::span<const Vec3> x1, double largest,
                              const std::function<double(const CollisionPair&)>& thickness);
 
@@ -45,7 +46,7 @@ class PairSearch {
 
  private:
   template <class Pair>
-  void add_near(const std::vector<Pair>& pairs, std::span<const Vec3> x, double largest,
+  void add_near(std::vector<Pair>& pairs, std::span<const Vec3> x0, std::span<const Vec3> x1, double largest,
                 const std::function<double(const CollisionPair&)>& thickness, std::vector<NearPair>& near);
   template <class Pair>
   void add_colliding(const std::vector<Pair>& pairs, std::span<const Vec3> x0, std::span<const Vec3> x1, double separation,
