@@ -8,6 +8,7 @@
 //   summary.json        how the run ended, with totals, machine and instruction set
 //   checkpoint/state.bin everything needed to go on, to the same bits
 //   contact_sheet.png   some frames in one picture
+//   last_good/          of a run that failed: the state before, and a picture of the place (scene/run.h)
 //   stats.svg           stats.csv as curves, where `taut plot` was asked for it
 //
 // Every file is written whole or not at all; stats.csv grows by whole rows.

@@ -103,6 +103,7 @@ RunSummary run(Simulation& simulation, const ResultsFolder& results, RunObserver
     if (!status.ok()) {
       summary.end = RunEnd::failed;
       summary.message = status.message;
+      save_last_good(simulation, results);
       break;
     }
     if (record.fallbacks > 0) observer.on_message(fmt::format("step {}: {} failed; {} solved it", record.step, simulation.scene().solver.name, record.solver));

@@ -1,7 +1,10 @@
 #pragma once
 // The scene's solids as meshes over time, for pictures and export.
 
+#include <map>
+
 #include "taut/picture/solid_mesh.h"
+#include "taut/scene/mesh_solid.h"
 #include "taut/scene/scene.h"
 
 namespace taut {
@@ -9,7 +12,8 @@ namespace taut {
 class SolidShapes {
  public:
   // `segments`: corners around a circle. A plane, which has no end, becomes a disc of 3 m radius about its own origin.
-  explicit SolidShapes(const Scene& scene, int segments = 96) : scene_(scene), segments_(segments) {}
+  // Reads the files of solids that are meshes; throws InputError as MeshSolid.
+  explicit SolidShapes(const Scene& scene, int segments = 96);
 
   std::size_t size() const { return scene_.solids.size(); }
   const Solid& solid(std::size_t k) const { return scene_.solids[k]; }
@@ -23,6 +27,7 @@ class SolidShapes {
  private:
   const Scene& scene_;
   int segments_;
+  std::map<std::size_t, MeshSolid> meshes_;  // by solid
 };
 
 }  // namespace taut
