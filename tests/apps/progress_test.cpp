@@ -64,7 +64,9 @@ TEST(Progress, NarrowTerminalIsNeverOverrun) {
     const auto bars = bars_of(in_terminal(folder, columns, quick_run("b")));
     ASSERT_GE(bars.size(), 2u) << columns;
     for (const std::string& bar : bars) EXPECT_LT(bar.size(), columns) << bar;
-    if (columns >= 40) EXPECT_NE(bars.back().find("frame 40/40"), std::string::npos) << bars.back();
+    if (columns >= 40) {
+      EXPECT_NE(bars.back().find("frame 40/40"), std::string::npos) << bars.back();
+    }
   }
 }
 
