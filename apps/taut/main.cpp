@@ -33,6 +33,7 @@ int main(int argc, char** argv) {
   taut::app::add_plot_verb(app, exit_code);
   taut::app::add_ccd_verb(app, exit_code);
   taut::app::add_render_verb(app, exit_code);
+  taut::app::add_view_verb(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <nlohmann/json.hpp>
 
 #include "taut/base/error.h"
 #include "taut/base/file.h"
+#include "taut/base/file_lock.h"
 #include "taut/io/npy.h"
 #include "taut/scene/checkpoint.h"
 #include "taut/scene/scene_file.h"
@@ -37,12 +39,26 @@ std::string cloths_json(const ClothModel& cloth) {
   return list.dump(2) + "\n";
 }
 
+void write_stretch_springs(const ClothModel& cloth, const fs::path& folder) {
+  std::vector<std::int32_t> ends;
+  std::vector<float> lengths;
+  for (const SpringModel* model : cloth.stretch_springs())
+    for (const Spring& spring : model->springs()) {
+      ends.insert(ends.end(), {spring.i, spring.j});
+      lengths.push_back(static_cast<float>(spring.parameters.rest_length));
+    }
+  const auto count = static_cast<std::int64_t>(lengths.size());
+  write_npy<std::int32_t>(folder / "stretch_springs.npy", ends, std::array{count, std::int64_t{2}});
+  write_npy<float>(folder / "rest_lengths.npy", lengths, std::array{count});
+}
+
 }  // namespace
 
 fs::path ResultsFolder::frame_file(int frame) const { return folder_ / "frames" / fmt::format("{:06}.npy", frame); }
 
 void ResultsFolder::start(const Simulation& simulation) const {
   refuse_foreign_folder(folder_);
+  refuse_running();
   for (const char* name : own_names) fs::remove_all(folder_ / name);
   write_file(scene_file(), scene_to_toml(simulation.scene()));
   const TriangleMesh& surface = simulation.cloth().surface();
@@ -54,7 +70,13 @@ void ResultsFolder::start(const Simulation& simulation) const {
                      uv_shape[] = {static_cast<std::int64_t>(surface.texcoords.size()), 2};
   write_npy<std::int32_t>(folder_ / "frames" / "triangles.npy", triangles, triangle_shape);
   write_npy<float>(folder_ / "frames" / "uv.npy", uv, uv_shape);
+  write_stretch_springs(simulation.cloth(), folder_ / "frames");
   write_file(folder_ / "frames" / "cloths.json", cloths_json(simulation.cloth()));
+}
+
+void ResultsFolder::refuse_running() const {
+  if (is_being_written(stats_file()))
+    throw InputError({folder_.string()}, "another taut is writing its results here; wait for its end, or give another folder with --out");
 }
 
 void ResultsFolder::write_frame(int frame, std::span<const Vec3> x) const { write_npy_float(frame_file(frame), x); }
@@ -121,6 +143,7 @@ StatsWriter::StatsWriter(const fs::path& path, int keep_steps) : path_(path) {
   write_file(path, content);
   file_ = std::fopen(path.c_str(), "ab");
   if (!file_) throw InputError({path.string()}, "cannot be written; check the folder's permissions");
+  mark_as_being_written(file_);
 }
 
 StatsWriter::~StatsWriter() { std::fclose(file_); }

@@ -89,6 +89,9 @@ RunSummary run(Simulation& simulation, const ResultsFolder& results, RunObserver
   const int steps_total = time.frames * time.steps_per_frame;
   RunSummary summary;
   summary.nodes = simulation.cloth().nodes();
+  results.refuse_running();
+  // What an earlier part of the run said about its end is over.
+  std::filesystem::remove(results.summary_file());
   results.remove_frames_after(first_frame);
   if (first_frame == 0) results.write_frame(0, simulation.state().x);
   StatsWriter stats(results.stats_file(), simulation.steps_done());
