@@ -32,6 +32,8 @@ int main(int argc, char** argv) {
   taut::app::add_export_verb(app, exit_code);
   taut::app::add_plot_verb(app, exit_code);
   taut::app::add_ccd_verb(app, exit_code);
+  taut::app::add_render_verb(app, exit_code);
+  taut::app::add_view_verb(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -29,7 +29,10 @@ void print_summary(const RunSummary& s, const Simulation& simulation, const Resu
   row("frames", (results.folder() / "frames").string());
   row("step by step", results.stats_file().string());
   row("summary", results.summary_file().string());
-  fmt::print("\n  taut export {} --format usd   turns the frames into files for other programs\n", results.folder().string());
+  fmt::print(
+      "\n  taut view {0}                  shows it in the browser\n  taut export {0} --format usd   turns the frames into files for other "
+      "programs\n",
+      results.folder().string());
 }
 
 }  // namespace

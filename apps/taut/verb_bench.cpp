@@ -127,6 +127,18 @@ void add_integrators(CLI::App& parent, int& exit_code) {
       ->check(CLI::PositiveNumber);
 }
 
+void add_contact(CLI::App& parent, int& exit_code) {
+  const auto [verb, arguments] =
+      add_bench(parent, "contact", "What contact costs a step, by phase; or --stress: every contact scene and jittered copies", bench_contact,
+                exit_code);
+  verb->add_flag("--full", arguments->options.full, "clump with 25,921 nodes, as in the paper (default 6,561)");
+  verb->add_option("--nodes", arguments->options.nodes, "Nodes of both sheets, a square number")->expected(1)->check(CLI::PositiveNumber);
+  verb->add_option("--stress", arguments->options.stress, "Run each contact scene and this many jittered copies, and report how they end")
+      ->check(CLI::Range(0, 1000));
+  verb->add_option("--frames", arguments->options.stress_frames, "Of each such run, at most (default 200)")->check(CLI::PositiveNumber);
+  verb->add_option("--scene", arguments->options.methods, "Only these scenes of the stress test")->delimiter(',');
+}
+
 }  // namespace
 
 void add_bench_verb(CLI::App& app, int& exit_code) {
@@ -145,6 +157,7 @@ void add_bench_verb(CLI::App& app, int& exit_code) {
       add_bench(*verb, "frames", "Paper, Section 3, 'improper U': iterations with three choices of U", bench_frames, exit_code);
   frames.verb->add_option("--tolerance", frames.arguments->options.tolerance, "Of the stop rule (default 1e-3)")
       ->check(CLI::Range(1e-14, 1.0));
+  add_contact(*verb, exit_code);
   add_roofline(*verb, exit_code);
 }
 

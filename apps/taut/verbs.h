@@ -15,6 +15,8 @@ void add_solve_verb(CLI::App& app, int& exit_code);
 void add_export_verb(CLI::App& app, int& exit_code);
 void add_plot_verb(CLI::App& app, int& exit_code);
 void add_ccd_verb(CLI::App& app, int& exit_code);
+void add_render_verb(CLI::App& app, int& exit_code);
+void add_view_verb(CLI::App& app, int& exit_code);
 
 // Of `taut export` and `taut run --export`.
 std::vector<std::string> export_format_names();

@@ -153,6 +153,23 @@ TEST(Export, KilledLeavesEachFileWholeOrAbsent) {
   }
 }
 
+TEST(Export, OfAnInterruptedRunHasWhatThereIsAndResumeHasAll) {
+  const WorkFolder folder;
+  folder.file("small.toml", small_scene());
+  const RunningProgram run(folder,
+                           {"run", "small.toml", "--out", "r", "--quiet", "--no-picture", "--export", "pc2", "--set", "time.frames=300"});
+  ASSERT_TRUE(RunningProgram::wait_until([&] { return fs::exists(folder / "r/frames/000005.npy"); }));
+  run.send(SIGINT);
+  EXPECT_EQ(run.wait().exit_code, 1);
+  const auto frames = static_cast<std::size_t>(
+      std::ranges::count_if(names_in(folder / "r/frames"), [](const std::string& name) { return name[0] == '0'; }));
+  ASSERT_LT(frames, 301u);
+  EXPECT_EQ(read_text(folder / "r/pc2/sheet.pc2").size(), 32 + frames * 72 * 12);
+  const ProgramEnd resumed = taut(folder, {"resume", "r", "--quiet", "--no-picture", "--export", "pc2"});
+  ASSERT_EQ(resumed.exit_code, 0) << resumed.err;
+  EXPECT_EQ(read_text(folder / "r/pc2/sheet.pc2").size(), 32u + 301 * 72 * 12);
+}
+
 TEST(Export, ARunKilledInTheMiddleLeavesNoHalfFile) {
   const WorkFolder folder;
   folder.file("small.toml", small_scene());

@@ -22,7 +22,7 @@ std::vector<std::string> verbs(const WorkFolder& folder) {
 TEST(Usage, EveryVerbHasHelpWithAnExample) {
   const WorkFolder folder;
   const std::vector<std::string> names = verbs(folder);
-  for (const char* verb : {"run", "resume", "check", "dump", "solve", "bench", "export", "plot", "ccd"})
+  for (const char* verb : {"run", "resume", "check", "dump", "solve", "bench", "export", "plot", "ccd", "render"})
     EXPECT_TRUE(std::ranges::find(names, verb) != names.end()) << verb << " is not listed by --help";
   for (const std::string& verb : names) {
     const ProgramEnd help = taut(folder, {verb, "--help"});

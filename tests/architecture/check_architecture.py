@@ -13,7 +13,7 @@ MAX_LINES = 500
 SOURCES = {".h", ".cpp", ".py", ".cmake"}
 SOURCE_FOLDERS = ["src", "apps", "tests", "bench", "tools", "python", "cmake"]
 # Folders of tests that test the whole project; each other one mirrors a room, a folder of src or a program of apps.
-PROJECT_TESTS = {"apps", "architecture", "install"}
+PROJECT_TESTS = {"apps", "architecture", "install", "viewer"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]')
 # Libraries that a program which uses Taut's headers must have too. The C++ library's own headers have neither a dot nor a slash.
 PUBLIC_LIBRARIES = ("Eigen/", "fmt/", "tbb/")

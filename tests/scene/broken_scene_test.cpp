@@ -93,7 +93,7 @@ std::vector<Broken> broken_scenes() {
       // What belongs together.
       {"no_cloth", "title = \"x\"\n", "1:1", {"cloth is missing"}},
       {"no_grid_nodes", "[[cloth]]\ngrid = { u = [1, 0, 0], v = [0, 1, 0] }\ndensity = 0.2\n", "2:8", {"cloth.0.grid.nodes is missing"}},
-      {"neither_grid_nor_mesh", "[[cloth]]\ndensity = 1\n", "1:1", {"cloth.0 needs exactly one of grid, mesh, it has none"}},
+      {"neither_grid_nor_mesh", "[[cloth]]\ndensity = 1\n", "1:1", {"cloth.0 needs exactly one of grid, tube, mesh, it has none"}},
       {"no_mass",
        "[[cloth]]\ngrid = { nodes = [3, 4], u = [1, 0, 0], v = [0, 1, 0] }\n",
        "1:1",

@@ -53,6 +53,7 @@ INSTANTIATE_TEST_SUITE_P(
         Advice{"core_pcg may take", {"cloth.k_shear=300"}, {"cloth.k_shear=300", "time.step=2e-4"}},
         Advice{"hang like rubber", {"cloth.k_stretch=1"}, {"cloth.k_stretch=60"}},
         Advice{"jitter", {"cloth.jitter=0.01"}, {"cloth.jitter=0.001"}},
+        Advice{"push its own neighbours", {"contact.thickness=0.01"}, {"contact.thickness=0.005"}},
         Advice{"start inside solid", {"solid.translation=[0,-0.1,0.5]"}, {"solid.translation=[0,-0.3,0.5]"}},
         Advice{"show through", {"solid.thickness=0"}, {"solid.thickness=3e-4"}},
         Advice{"jump over cloth", {"solid.velocity=[0,300,0]"}, {"solid.velocity=[0,30,0]"}}));

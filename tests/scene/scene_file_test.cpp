@@ -173,6 +173,8 @@ TEST(ShippedScenes, AreReadRoundTripAndRaiseNoDoubts) {
     if (entry.path().extension() != ".toml") continue;
     SCOPED_TRACE(entry.path().string());
     ++count;
+    // Its body is not part of Taut.
+    if (entry.path().stem() == "body" && !fs::exists(source_dir / "../shared/data/body")) continue;
     const Scene scene = read_scene(entry.path());
     EXPECT_FALSE(scene.title.empty());
     EXPECT_TRUE(read_file(entry.path()).starts_with("# ")) << "a comment that says what one sees";

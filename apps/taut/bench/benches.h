@@ -20,6 +20,9 @@ struct BenchOptions {
   bool full = false;
   std::vector<std::string> methods;  // empty: those worth comparing that this build has
   double seconds_limit = 20.0;       // after which an iterative method is given up
+  // contact
+  int stress = -1;          // jittered copies of each scene; negative: measure times instead
+  int stress_frames = 200;  // of each, at most
 };
 
 // Paper, Table 1: MPCG against uPCG on few and on many constraints, 6,561 nodes, h = 3.67 ms.
@@ -35,6 +38,9 @@ nlohmann::ordered_json bench_scale(const BenchOptions& options);
 nlohmann::ordered_json bench_integrators(const BenchOptions& options);
 // The paper's "improper U": iterations of one system in three kinds of frames, 6,561 nodes.
 nlohmann::ordered_json bench_frames(const BenchOptions& options);
+
+// Contact by phase, on ball and clump; or the stress test. Rows: one a step, or one a trial. `methods` then names the scenes.
+nlohmann::ordered_json bench_contact(const BenchOptions& options);
 
 // Of flatness and scale: options.methods, or the default ones that this build knows.
 std::vector<std::string> methods_of(const BenchOptions& options);

@@ -148,6 +148,30 @@ Figure integrators_figure(const Json& rows, const std::string& machine) {
   return figure;
 }
 
+Figure contact_figure(const Json& rows, const std::string& machine) {
+  Figure figure;
+  figure.title = "Contact: ms a step by phase";
+  figure.note = machine;
+  figure.columns = 2, figure.shared_legend = true, figure.panel_width = 430, figure.panel_height = 330;
+  std::vector<std::string> scenes;
+  for (const Json& row : rows)
+    if (const std::string scene = text(row, "scene"); !std::ranges::count(scenes, scene)) scenes.push_back(scene);
+  for (const std::string& scene : scenes) {
+    Panel panel;
+    panel.title = scene;
+    panel.x = {"time, s"}, panel.y = {"ms a step"};
+    for (const auto& [key, name] : {std::pair("near_ms", "near pairs"), {"impulse_ms", "impulses"}, {"detect_ms", "continuous detection"},
+                                    {"zone_ms", "rigid zones"}, {"contact_ms", "all contact"}, {"check_ms", "check for intersections"}}) {
+      Curve curve{name, {}, CurveStyle::line};
+      for (const Json& row : rows)
+        if (text(row, "scene") == scene) curve.points.push_back({number(row, "time"), number(row, key)});
+      panel.curves.push_back(std::move(curve));
+    }
+    figure.panels.push_back(std::move(panel));
+  }
+  return figure;
+}
+
 Figure solve_report_figure(const Json& rows, const std::string& machine) {
   const bool has_error = std::ranges::any_of(rows, [](const Json& row) { return row.contains("anorm_error"); });
   Figure figure;
@@ -187,12 +211,13 @@ Figure bench_figure(const Json& report) {
   if (bench == "flatness") return FlatnessFigure(rows).figure(machine);
   if (bench == "scale") return scale_figure(rows, machine);
   if (bench == "integrators") return integrators_figure(rows, machine);
+  if (bench == "contact") return contact_figure(rows, machine);
   if (bench == "solve") return solve_report_figure(rows, machine);
   if (bench == "table1" || bench == "table2") return table_figure(rows, machine);
   throw InputError(
       bench.empty()
           ? "the report does not say of which bench it is (\"bench\"), so it cannot be drawn"
-          : fmt::format("there is no figure for the bench '{}'; there are some for table1, table2, flatness, scale, integrators and solve",
+          : fmt::format("there is no figure for the bench '{}'; there are some for table1, table2, flatness, scale, integrators, contact and solve",
                         bench));
 }
 

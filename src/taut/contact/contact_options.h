@@ -1,5 +1,5 @@
 #pragma once
-// Options of contact with solids; validated by scene/.
+// Options of contact; validated by scene/.
 
 namespace taut {
 
@@ -8,6 +8,14 @@ struct ContactOptions {
   int max_passes = 8;
   // A node this close (m) to a solid's (thickened) surface touches it.
   double touch_tolerance = 1e-6;
+
+  // Cloth with itself, with other cloths and with mesh solids (contact/cloth_contact.h).
+  bool self = true;
+  double thickness = 0.0;  // m, between the middles of two layers; 0: chosen from the cloths' edges
+  double friction = 0.3;   // Coulomb's mu of cloth on cloth
+  int sweeps = 8;          // rounds of impulses before what is left is held as rigid zones
+  int check_every = 1;     // steps from one exact check for intersections to the next; 0: none
+  bool allow_intersections = false;  // start although there are intersections
   bool operator==(const ContactOptions&) const = default;
 };
 

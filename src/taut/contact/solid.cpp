@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace taut {
 namespace {
@@ -75,6 +76,8 @@ SurfacePoint closest_surface(const Solid& solid, const Vec3& local) {
       return cylinder_surface(solid.radius, solid.height, local);
     case SolidShape::box:
       return box_surface(solid.size, local);
+    case SolidShape::mesh:
+      return {std::numeric_limits<double>::infinity(), Vec3::UnitZ()};
   }
   return {};
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Analytic solids that cloth collides with, and their rigid motion.
+// Solids that cloth collides with, and their rigid motion.
 //
 //   pose(t)        x_world = rotation(t) * x_local + translation(t)
 //   local shapes   sphere    centre 0, `radius`
@@ -9,6 +9,7 @@
 // Units: m, s, rad. `thickness` (m) is added outside the surface; `friction` is Coulomb's μ (static and kinetic alike), no unit.
 
 #include <Eigen/Geometry>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -30,7 +31,8 @@ struct KeyFrame {
   bool operator==(const KeyFrame&) const = default;
 };
 
-enum class SolidShape { sphere, plane, cylinder, box };
+// mesh: a triangle mesh, of which closest_surface knows nothing; contact with it is that of surfaces (contact/cloth_contact.h).
+enum class SolidShape { sphere, plane, cylinder, box, mesh };
 
 struct Solid {
   std::string name;
@@ -40,6 +42,11 @@ struct Solid {
   Vec3 size = Vec3::Ones();
   double friction = 0.0;
   double thickness = 0.0;
+  // Of a mesh: OBJ file, its lengths' scale and upward axis; and where it deforms, a file of positions (io/motion_file.h), samples a second.
+  std::filesystem::path mesh, motion;
+  double scale = 1.0;
+  bool y_up = false;
+  double motion_rate = 24.0;
 
   // Motion: between key frames positions are linear and rotations spherically linear in time; before the first and after the last the pose
   // is held. With no key frame the pose is `initial` moved by the constant `velocity` (m/s) and turned by `angular_velocity` (rad/s, world

@@ -100,6 +100,12 @@ bool SolidContact::update(std::span<const Vec3> x_end, std::span<const Vec3> con
 }
 
 Index SolidContact::finish(std::span<Vec3> x_end) {
+  move_out(x_end);
+  keep();
+  return counts_.moved;
+}
+
+Index SolidContact::move_out(std::span<Vec3> x_end) {
   std::vector<double> depth(static_cast<std::size_t>(nodes_), 0.0);
   parallel_for(nodes_, node_grain, [&](Index begin, Index end) {
     for (Index i = begin; i < end; ++i) met_[i] = move_out(i, x_end[i], depth[i]);
@@ -108,9 +114,12 @@ Index SolidContact::finish(std::span<Vec3> x_end) {
     counts_.moved += met_[i];
     counts_.deepest = std::max(counts_.deepest, depth[i]);
   }
+  return counts_.moved;
+}
+
+void SolidContact::keep() {
   for (TouchedNode& touched : touched_) settle(touched);
   remember();
-  return counts_.moved;
 }
 
 // Stick and slide for the next step. Stiff cloth with slack springs pulls at its nodes irregularly, by more than friction holds: one that

@@ -74,6 +74,15 @@ struct ContactCounts {
   double deepest = 0.0;  // m: the greatest depth of a node inside a solid before finish moved it; 0 if none
 };
 
+// A solid in a node's way: the plane n·x = offset on which the node may end.
+struct Obstacle {
+  Index solid = 0;
+  Vec3 normal = Vec3::UnitZ();
+  double offset = 0.0;           // m
+  Vec3 carried = Vec3::Zero();   // m: where the solid's motion takes the node's place at the start
+  double friction = 0.0;
+};
+
 class SolidContact {
  public:
   SolidContact(std::vector<Solid> solids, Index nodes, ContactOptions options);
@@ -91,8 +100,18 @@ class SolidContact {
   // After the last pass: moves nodes (without pins) that end inside by more than the tolerance above to the surface and returns how many.
   // Keeps the contacts for the next step.
   Index finish(std::span<Vec3> x_end);
+  // The two halves of finish: a step that is given up in between has changed nothing that lasts.
+  Index move_out(std::span<Vec3> x_end);
+  void keep();
+
+  // Between begin_step and the next: the first solid in which the node would end deeper than the tolerance above, moving from where it
+  // started to x_end; null if there is none.
+  std::optional<Obstacle> obstacle(Index node, const Vec3& x_end) const;
+  // The planes of all contacts for nodes that end at x_end, by node.
+  std::vector<std::pair<Index, Obstacle>> touched(std::span<const Vec3> x_end) const;
 
   std::span<const Solid> solids() const { return solids_; }
+  Index nodes() const { return nodes_; }
   int contacts() const { return static_cast<int>(contacts_.size()); }
   int sticking() const;  // nodes
   int passes() const { return counts_.passes; }
@@ -159,6 +178,7 @@ class SolidContact {
   bool add_inside(std::span<const Vec3> x_end);
   bool drop_released();
   void group();
+  Obstacle obstacle(const SolidStep& step, Index node, const Vec3& x_end) const;
   void recall(TouchedNode& touched, std::size_t kept) const;
   double depth_tolerance(const SolidStep& step) const;
   void renew_planes(std::span<const Vec3> x_end);

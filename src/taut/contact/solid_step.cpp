@@ -22,6 +22,8 @@ double radius_about_origin(const Solid& solid) {
       return std::hypot(solid.radius, 0.5 * solid.height);
     case SolidShape::box:
       return 0.5 * solid.size.norm();
+    case SolidShape::mesh:
+      return 0.0;
   }
   return std::numeric_limits<double>::infinity();
 }
@@ -34,6 +36,7 @@ double characteristic_length(const Solid& solid) {
     case SolidShape::box:
       return 0.5 * solid.size.minCoeff();
     case SolidShape::plane:
+    case SolidShape::mesh:
       return 0.0;
   }
   return 0.0;

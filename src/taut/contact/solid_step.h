@@ -31,6 +31,8 @@ class SolidStep {
   Vec3 anchor(const Vec3& x0, const Vec3& x1, double touch_tolerance) const;
   // Where the solid's motion takes a local point by t + h.
   Vec3 carried(const Vec3& local) const { return end_rotation_ * local + end_translation_; }
+  // The same for a world point at the start.
+  Vec3 carried_from(const Vec3& x0) const { return carried(start_local(x0)); }
   // Tangent plane at the surface point nearest to x1 at the end; where x1 has gone so deep (or through) that this would be a face on
   // another side than the anchor's, the tangent plane at the anchor.
   LandingPlane landing(const Vec3& x1, const Vec3& anchor) const;

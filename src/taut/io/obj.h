@@ -27,8 +27,9 @@ namespace taut {
 // `notes` (when given) receives what was read but may not be what the user meant, one located sentence each.
 TriangleMesh read_obj(const std::filesystem::path& path, std::vector<std::string>* notes = nullptr);
 
-// `v` with the shortest decimals that read back to the same doubles, `vt` likewise when there are any, `f` counted from 1.
+// `v` with the shortest decimals that read back to the same doubles, or floats, `vt` likewise when there are any, `f` counted from 1.
 // Through a temporary file; throws InputError when that cannot be written.
-void write_obj(const std::filesystem::path& path, const TriangleMesh& mesh);
+enum class ObjDigits { of_double, of_float };
+void write_obj(const std::filesystem::path& path, const TriangleMesh& mesh, ObjDigits digits = ObjDigits::of_double);
 
 }  // namespace taut

@@ -39,7 +39,7 @@ class MddSequence : public SequenceWriter {
     for (std::size_t k = 0; k < frame.size(); ++k) {
       const SequenceObject& object = objects()[k];
       if (is_first()) {
-        write_obj(file(object.stem + ".obj"), mesh_at(object, frame[k]));
+        write_obj(file(object.stem + ".obj"), mesh_at(object, frame[k]), ObjDigits::of_float);
         if (object.moves) spools_[k] = std::make_unique<SpoolFile>(options().folder);
       }
       if (!spools_[k]) continue;

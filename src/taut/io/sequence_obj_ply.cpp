@@ -9,6 +9,8 @@ namespace taut::detail {
 
 namespace {
 
+void write_float_obj(const std::filesystem::path& path, const TriangleMesh& mesh) { write_obj(path, mesh, ObjDigits::of_float); }
+
 using WriteMesh = void(const std::filesystem::path& path, const TriangleMesh& mesh);
 
 class MeshSequence : public SequenceWriter {
@@ -35,7 +37,7 @@ class MeshSequence : public SequenceWriter {
 }  // namespace
 
 std::unique_ptr<SequenceWriter> make_obj_sequence(SequenceOptions options, std::vector<SequenceObject> objects) {
-  return std::make_unique<MeshSequence>(std::move(options), std::move(objects), write_obj, ".obj");
+  return std::make_unique<MeshSequence>(std::move(options), std::move(objects), write_float_obj, ".obj");
 }
 
 std::unique_ptr<SequenceWriter> make_ply_sequence(SequenceOptions options, std::vector<SequenceObject> objects) {

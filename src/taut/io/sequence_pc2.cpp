@@ -22,7 +22,7 @@ class Pc2Sequence : public SequenceWriter {
     for (std::size_t k = 0; k < frame.size(); ++k) {
       const SequenceObject& object = objects()[k];
       if (is_first()) {
-        write_obj(file(object.stem + ".obj"), mesh_at(object, frame[k]));
+        write_obj(file(object.stem + ".obj"), mesh_at(object, frame[k]), ObjDigits::of_float);
         if (object.moves) caches_[k] = std::make_unique<Pc2Writer>(file(object.stem + ".pc2"), object.points, static_cast<float>(number));
       }
       if (caches_[k]) caches_[k]->add_sample(frame[k].points);

@@ -13,12 +13,13 @@ constexpr float two_pi = 2.0F * std::numbers::pi_v<float>;
 constexpr float gloss_exponent = 48.0F;
 constexpr float shoulder = 0.8F;
 
-// Linear radiance; together a white surface facing the key light gives back about 1.1.
-const Vec3f key_light(0.66F, 0.635F, 0.59F);
-const Vec3f sky_zenith(0.50F, 0.54F, 0.60F);
-const Vec3f sky_horizon(0.58F, 0.57F, 0.55F);
-const Vec3f below_without_ground(0.36F, 0.35F, 0.34F);
-constexpr float blocked_light = 0.13F;       // from whatever blocks the sky
+// Linear radiance; together a white surface facing the key light gives back about 1.3, which is rolled off. The key light is about twice the
+// sky, so that folds show.
+const Vec3f key_light(0.88F, 0.845F, 0.785F);
+const Vec3f sky_zenith(0.395F, 0.425F, 0.475F);
+const Vec3f sky_horizon(0.45F, 0.44F, 0.43F);
+const Vec3f below_without_ground(0.28F, 0.275F, 0.265F);
+constexpr float blocked_light = 0.11F;       // from whatever blocks the sky
 constexpr float blocked_own_colour = 0.30F;  // what blocks is mostly the cloth itself
 
 Vec3f disc_point(const Vec3f& centre, const Vec3f& x, const Vec3f& y, float radius, const std::array<float, 2>& s) {

@@ -126,7 +126,7 @@ void Renderer::set_ground(const Camera& camera, double distance) {
   ground.colour = detail::to_linear(options_.ground_colour);
   ground.line_offset = (-camera.target).cast<float>();
   lights_.has_ground = true;
-  lights_.ground_bounce = 0.75F * ground.colour;
+  lights_.ground_bounce = 0.6F * ground.colour;
   ground_ = ground;
 }
 

@@ -13,7 +13,7 @@ static_assert(std::endian::native == std::endian::little, "checkpoints are littl
 
 namespace {
 
-constexpr char magic[8] = {'T', 'A', 'U', 'T', 'C', 'K', 'P', '2'};
+constexpr char magic[8] = {'T', 'A', 'U', 'T', 'C', 'K', 'P', '3'};
 
 std::uint64_t checksum(std::string_view bytes) {
   std::uint64_t hash = 0xcbf29ce484222325ull;
@@ -90,6 +90,8 @@ void transfer(Archive& archive, Content& c) {
   archive.list(c.contacts.sticking);
   archive.list(c.contacts.normal_force);
   archive.list(c.solver_memory);
+  archive.list(c.zones.node);
+  archive.list(c.zones.rides);
 }
 
 }  // namespace

@@ -1,12 +1,13 @@
 #pragma once
 // Everything needed to go on with a simulation to the same bits, as one binary file (little-endian):
 //
-//   "TAUTCKP2", then the scene as TOML (length, bytes), steps done, frame, time, has_previous, the arrays x, v, x_prev, v_prev, last (length, doubles),
-//   the contacts, the solver's memory, and a checksum (FNV-1a, 64 bits) of all before it
+//   "TAUTCKP3", then the scene as TOML (length, bytes), steps done, frame, time, has_previous, the arrays x, v, x_prev, v_prev, last (length, doubles),
+//   the contacts, the solver's memory, the nodes of rigid zones, and a checksum (FNV-1a, 64 bits) of all before it
 
 #include <iosfwd>
 #include <string>
 
+#include "taut/contact/cloth_contact.h"
 #include "taut/contact/solid_contact.h"
 #include "taut/step/state.h"
 
@@ -19,6 +20,7 @@ struct Checkpoint {
   State state;
   ContactState contacts;
   std::vector<double> solver_memory;  // ConstrainedSolver::memory
+  ZoneState zones;
 };
 
 void write(std::ostream& out, const Checkpoint& checkpoint);

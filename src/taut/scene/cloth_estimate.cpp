@@ -46,7 +46,7 @@ ClothEstimate estimate(const Cloth& cloth, const TriangleMesh& shape) {
   // Choi & Ko's bend springs answer small compressions with the cap's slope.
   const double cap = m.bend_cap > 0 ? m.bend_cap : m.k_stretch;
   const double k_bend = m.bend_model == BendModel::choi_ko ? cap : m.k_bend;
-  if (cloth.from_file) {
+  if (!cloth.is_grid()) {
     e.node_mass = e.mass / nodes;
     e.spacing = mean_edge(shape);
     e.rest_stiffness = 3 * k_bend;

@@ -33,6 +33,11 @@ std::vector<Index> selected_nodes(const Cloth& cloth, const NodeSelection& where
   const GridShape& g = cloth.grid;
   for (const std::string& corner : where.corners) nodes.push_back(corner_node(g, corner));
   for (const std::string& edge : where.edges) {
+    if (cloth.is_tube) {
+      const Index row = edge == "v0" ? 0 : cloth.tube.along - 1;
+      for (Index k = 0; k < cloth.tube.around; ++k) nodes.push_back(row * cloth.tube.around + k);
+      continue;
+    }
     const bool along_v = edge[0] == 'u';
     const Index count = along_v ? g.nv : g.nu;
     const Index fixed = edge[1] == '0' ? 0 : (along_v ? g.nu : g.nv) - 1;
@@ -76,8 +81,8 @@ void ClothModel::add_cloth(const Cloth& cloth, const Scene& scene, std::vector<d
   ClothPart part{cloth.name, nodes(), static_cast<Index>(mesh.positions.size()), static_cast<Index>(surface_.triangles.size()),
                  static_cast<Index>(mesh.triangles.size())};
   // Rest lengths are those of the shape before placement and jitter, which only say where it starts.
-  auto springs = cloth.from_file ? mesh_springs(mesh, cloth.material, part.first_node, cloth.name)
-                                 : grid_springs(cloth.grid, mesh.positions, cloth.material, part.first_node, cloth.name);
+  auto springs = cloth.is_grid() ? grid_springs(cloth.grid, mesh.positions, cloth.material, part.first_node, cloth.name)
+                                 : mesh_springs(mesh, cloth.material, part.first_node, cloth.name);
   for (auto& model : springs) springs_.push_back(std::move(model));
   const std::vector<double> own_masses = node_masses(cloth, mesh);
   masses.insert(masses.end(), own_masses.begin(), own_masses.end());

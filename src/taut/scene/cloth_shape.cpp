@@ -6,6 +6,7 @@
 namespace taut {
 
 TriangleMesh rest_shape(const Cloth& cloth, const std::filesystem::path& folder) {
+  if (cloth.is_tube) return make_tube(cloth.tube);
   if (!cloth.from_file) return make_grid(cloth.grid);
   const std::filesystem::path path = cloth.mesh.is_absolute() ? cloth.mesh : folder / cloth.mesh;
   TriangleMesh mesh = read_mesh(path);

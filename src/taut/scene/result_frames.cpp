@@ -28,6 +28,7 @@ double size_of(const Solid& solid) {
     case SolidShape::box:
       return solid.size.maxCoeff();
     case SolidShape::plane:
+    case SolidShape::mesh:
       break;
   }
   return 0.0;

@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <nlohmann/json.hpp>
 
 #include "taut/base/error.h"
 #include "taut/base/file.h"
+#include "taut/base/file_lock.h"
 #include "taut/io/npy.h"
 #include "taut/scene/checkpoint.h"
 #include "taut/scene/scene_file.h"
@@ -17,7 +19,7 @@ namespace fs = std::filesystem;
 namespace {
 
 // What a run may leave in its folder; anything else there belongs to somebody.
-constexpr const char* own_names[] = {"scene.toml", "frames", "stats.csv", "summary.json", "checkpoint", "contact_sheet.png", "stats.svg"};
+constexpr const char* own_names[] = {"scene.toml", "frames", "stats.csv", "summary.json", "checkpoint", "contact_sheet.png", "stats.svg", "last_good"};
 
 void refuse_foreign_folder(const fs::path& folder) {
   if (!fs::exists(folder)) return;
@@ -37,12 +39,26 @@ std::string cloths_json(const ClothModel& cloth) {
   return list.dump(2) + "\n";
 }
 
+void write_stretch_springs(const ClothModel& cloth, const fs::path& folder) {
+  std::vector<std::int32_t> ends;
+  std::vector<float> lengths;
+  for (const SpringModel* model : cloth.stretch_springs())
+    for (const Spring& spring : model->springs()) {
+      ends.insert(ends.end(), {spring.i, spring.j});
+      lengths.push_back(static_cast<float>(spring.parameters.rest_length));
+    }
+  const auto count = static_cast<std::int64_t>(lengths.size());
+  write_npy<std::int32_t>(folder / "stretch_springs.npy", ends, std::array{count, std::int64_t{2}});
+  write_npy<float>(folder / "rest_lengths.npy", lengths, std::array{count});
+}
+
 }  // namespace
 
 fs::path ResultsFolder::frame_file(int frame) const { return folder_ / "frames" / fmt::format("{:06}.npy", frame); }
 
 void ResultsFolder::start(const Simulation& simulation) const {
   refuse_foreign_folder(folder_);
+  refuse_running();
   for (const char* name : own_names) fs::remove_all(folder_ / name);
   write_file(scene_file(), scene_to_toml(simulation.scene()));
   const TriangleMesh& surface = simulation.cloth().surface();
@@ -54,7 +70,13 @@ void ResultsFolder::start(const Simulation& simulation) const {
                      uv_shape[] = {static_cast<std::int64_t>(surface.texcoords.size()), 2};
   write_npy<std::int32_t>(folder_ / "frames" / "triangles.npy", triangles, triangle_shape);
   write_npy<float>(folder_ / "frames" / "uv.npy", uv, uv_shape);
+  write_stretch_springs(simulation.cloth(), folder_ / "frames");
   write_file(folder_ / "frames" / "cloths.json", cloths_json(simulation.cloth()));
+}
+
+void ResultsFolder::refuse_running() const {
+  if (is_being_written(stats_file()))
+    throw InputError({folder_.string()}, "another taut is writing its results here; wait for its end, or give another folder with --out");
 }
 
 void ResultsFolder::write_frame(int frame, std::span<const Vec3> x) const { write_npy_float(frame_file(frame), x); }
@@ -72,8 +94,14 @@ void ResultsFolder::remove_frames_after(int frame) const {
 }
 
 void ResultsFolder::write_checkpoint(const Simulation& simulation, int frame) const {
-  const Checkpoint checkpoint{scene_to_toml(simulation.scene()), simulation.steps_done(), frame, simulation.state(),
-                              simulation.contact().state(), simulation.stepper().solver().memory()};
+  const SurfaceContact* surface_contact = simulation.surface_contact();
+  const Checkpoint checkpoint{scene_to_toml(simulation.scene()),
+                              simulation.steps_done(),
+                              frame,
+                              simulation.state(),
+                              simulation.contact().state(),
+                              simulation.stepper().solver().memory(),
+                              surface_contact ? surface_contact->state() : ZoneState{}};
   write_file(checkpoint_file(), [&](std::ostream& out) { write(out, checkpoint); });
 }
 
@@ -86,7 +114,8 @@ int ResultsFolder::read_checkpoint(Simulation& simulation) const {
     throw InputError({checkpoint_file().string()},
                      fmt::format("has {} nodes, the scene has {}; a mesh file has changed since: run the scene anew",
                                  checkpoint.state.x.size(), simulation.cloth().nodes()));
-  simulation.restore(std::move(checkpoint.state), std::move(checkpoint.contacts), checkpoint.steps, checkpoint.solver_memory);
+  simulation.restore(std::move(checkpoint.state), std::move(checkpoint.contacts), checkpoint.steps, checkpoint.solver_memory,
+                     std::move(checkpoint.zones));
   return checkpoint.frame;
 }
 
@@ -94,7 +123,8 @@ std::string StatsWriter::header() {
   return "step,time,frame,nodes,dof,constraints,contacts,solver,core_springs,iterations,relative_residual,"
          "assemble_ms,order_ms,factor_ms,solve_ms,contact_ms,step_ms,kinetic_J,elastic_J,max_stretch,intersections,bound_iterations,"
          "precision,fallbacks,"
-         "collapsed_springs,retries,zone_nodes,contact_passes,contact_moved,deepest_m,newton_iterations\n";
+         "collapsed_springs,retries,zone_nodes,contact_passes,contact_moved,deepest_m,newton_iterations,"
+         "pairs_tested,near_pairs,pushing_pairs,impacts,zones,largest_zone,near_ms,impulse_ms,detect_ms,zone_ms,check_ms\n";
 }
 
 StatsWriter::StatsWriter(const fs::path& path, int keep_steps) : path_(path) {
@@ -113,6 +143,7 @@ StatsWriter::StatsWriter(const fs::path& path, int keep_steps) : path_(path) {
   write_file(path, content);
   file_ = std::fopen(path.c_str(), "ab");
   if (!file_) throw InputError({path.string()}, "cannot be written; check the folder's permissions");
+  mark_as_being_written(file_);
 }
 
 StatsWriter::~StatsWriter() { std::fclose(file_); }
@@ -120,12 +151,13 @@ StatsWriter::~StatsWriter() { std::fclose(file_); }
 void StatsWriter::write(const StepRecord& r, int frame) {
   const auto optional = [](auto value, auto nothing) { return value == nothing ? std::string() : std::to_string(value); };
   const std::string row = fmt::format(
-      "{},{:.9g},{},{},{},{},{},{},{},{},{:.3e},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.9g},{:.9g},{:.6g},,{},{},{},{},{},,{},{},{"
-      ":.3e},{}\n",
+      "{},{:.9g},{},{},{},{},{},{},{},{},{:.3e},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.9g},{:.9g},{:.6g},{},{},{},{},{},{},{},{},{},{"
+      ":.3e},{},{},{},{},{},{},{},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f}\n",
       r.step, r.time, frame, r.nodes, r.dof, r.constraints, r.contacts, r.solver, optional(r.core_springs, Index{0}), r.iterations,
       r.relative_residual, r.assemble_ms, r.order_ms, r.factor_ms, r.solve_ms, r.contact_ms, r.step_ms, r.kinetic_J, r.elastic_J,
-      r.max_stretch, optional(r.bound_iterations, -1), r.precision, r.fallbacks, r.collapsed_springs, r.retries, r.contact_passes,
-      r.contact_moved, r.deepest_m, r.newton_iterations);
+      r.max_stretch, optional(r.intersections, -1), optional(r.bound_iterations, -1), r.precision, r.fallbacks, r.collapsed_springs, r.retries, r.zone_nodes, r.contact_passes,
+      r.contact_moved, r.deepest_m, r.newton_iterations, r.pairs_tested, r.near_pairs, r.pushing_pairs, r.impacts, r.zones, r.largest_zone, r.near_ms,
+      r.impulse_ms, r.detect_ms, r.zone_ms, r.check_ms);
   // One write a row: a reader, or a crash, never sees half of one.
   if (std::fwrite(row.data(), 1, row.size(), file_) != row.size() || std::fflush(file_) != 0)
     throw InputError({path_.string()}, "cannot be written; is the disk full? The steps up to here are safe: `taut resume` goes on");

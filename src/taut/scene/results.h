@@ -4,13 +4,16 @@
 //   scene.toml          what ran, all defaults filled in
 //   frames/NNNNNN.npy   node positions, float32 (nodes, 3), m; 000000 is the start
 //   frames/triangles.npy int32 (triangles, 3), frames/uv.npy float32 (nodes, 2), frames/cloths.json: which nodes belong to which cloth
+//   frames/stretch_springs.npy int32 (springs, 2), the nodes at the ends; frames/rest_lengths.npy float32 (springs), m: the stretch is L/L0 - 1
 //   stats.csv           one row a step
 //   summary.json        how the run ended, with totals, machine and instruction set
 //   checkpoint/state.bin everything needed to go on, to the same bits
 //   contact_sheet.png   some frames in one picture
+//   last_good/          of a run that failed: the state before, and a picture of the place (scene/run.h)
 //   stats.svg           stats.csv as curves, where `taut plot` was asked for it
 //
-// Every file is written whole or not at all; stats.csv grows by whole rows.
+// Every file is written whole or not at all; stats.csv grows by whole rows. While a run lasts, stats.csv is marked as being written
+// (base/file_lock.h): that tells a run that goes on from one that was killed.
 
 #include <cstdio>
 #include <filesystem>
@@ -34,8 +37,10 @@ class ResultsFolder {
   std::filesystem::path contact_sheet_file() const { return folder_ / "contact_sheet.png"; }
 
   // Makes the folder for a new run: results of an earlier run in it are removed. Throws InputError when the folder holds something that is not a
-  // result of Taut's.
+  // result of Taut's, or when a run is writing it.
   void start(const Simulation& simulation) const;
+  // Throws InputError while another run writes this folder.
+  void refuse_running() const;
   void write_frame(int frame, std::span<const Vec3> x) const;
   std::vector<Vec3> read_frame(int frame) const;
   // How many frames there are, counted from 0 without a gap.

@@ -89,6 +89,9 @@ RunSummary run(Simulation& simulation, const ResultsFolder& results, RunObserver
   const int steps_total = time.frames * time.steps_per_frame;
   RunSummary summary;
   summary.nodes = simulation.cloth().nodes();
+  results.refuse_running();
+  // What an earlier part of the run said about its end is over.
+  std::filesystem::remove(results.summary_file());
   results.remove_frames_after(first_frame);
   if (first_frame == 0) results.write_frame(0, simulation.state().x);
   StatsWriter stats(results.stats_file(), simulation.steps_done());
@@ -103,6 +106,7 @@ RunSummary run(Simulation& simulation, const ResultsFolder& results, RunObserver
     if (!status.ok()) {
       summary.end = RunEnd::failed;
       summary.message = status.message;
+      save_last_good(simulation, results);
       break;
     }
     if (record.fallbacks > 0) observer.on_message(fmt::format("step {}: {} failed; {} solved it", record.step, simulation.scene().solver.name, record.solver));

@@ -38,6 +38,10 @@ struct RunSummary {
 // becomes true. Whatever happens, the folder is valid up to the last written frame, and the summary and the contact sheet are written.
 RunSummary run(Simulation& simulation, const ResultsFolder& results, RunObserver& observer, const std::atomic<bool>& interrupt, int first_frame = 0);
 
+// After a failed step: writes the state before it into `last_good/` of the folder, all surfaces as surface.obj, and where cloth could not be
+// kept apart a picture of the place, place.png. Returns the folder.
+std::filesystem::path save_last_good(const Simulation& simulation, const ResultsFolder& results);
+
 // Draws some frames of a results folder side by side. Throws InputError when there are none.
 void draw_contact_sheet(const Simulation& simulation, const ResultsFolder& results);
 

@@ -11,6 +11,7 @@
 #include "taut/contact/solid.h"
 #include "taut/force/spring_material.h"
 #include "taut/mesh/grid.h"
+#include "taut/mesh/tube.h"
 #include "taut/solve/solver_options.h"
 #include "taut/step/integrator_options.h"
 
@@ -47,9 +48,12 @@ struct Pin {
 
 struct Cloth {
   std::string name;
-  // Shape: a grid (Provot springs), or a triangle mesh from a file (stretch on edges, bend across edges).
+  // Shape: a grid (Provot springs), or a tube or a triangle mesh from a file (stretch on edges, bend across edges).
   bool from_file = false;
+  bool is_tube = false;
   GridShape grid;
+  TubeShape tube;
+  bool is_grid() const { return !from_file && !is_tube; }
   std::filesystem::path mesh;  // OBJ or PLY; absolute after reading (in a file: relative to it)
   double scale = 1.0;          // of the file's coordinates; 0.01 for centimetres
   Pose placement;              // applied after scale

@@ -79,7 +79,7 @@ void doubt_core(Doubts& d, const Cloth& cloth, const ClothEstimate& e) {
 }
 
 void doubt_stretch(Doubts& d, const Cloth& cloth, const ClothEstimate& e) {
-  if (cloth.pins.empty() || cloth.from_file) return;
+  if (cloth.pins.empty() || !cloth.is_grid()) return;
   // The topmost spring of a hanging column of n nodes carries all of them.
   const double n = std::max(cloth.grid.nu, cloth.grid.nv);
   const double strain = n * e.node_mass * d.scene.gravity.norm() / (cloth.material.k_stretch * e.spacing);
@@ -94,8 +94,16 @@ void doubt_jitter(Doubts& d, const Cloth& cloth, const ClothEstimate& e) {
           e.spacing, 0.1 * e.spacing);
 }
 
+void doubt_layers(Doubts& d, const Cloth& cloth, const ClothEstimate& e) {
+  const double thickness = d.scene.contact.thickness;
+  if (d.scene.contact.self && thickness > 0.5 * e.spacing)
+    d.add("contact.thickness = {} m is more than half of an edge of cloth '{}': it will push its own neighbours apart; set it below {:.1g}",
+          thickness, cloth.name, 0.5 * e.spacing);
+}
+
 void doubt_start(Doubts& d, const Cloth& cloth, const TriangleMesh& shape, const Solid& solid) {
   const Pose pose = solid.pose(0.0);
+  if (solid.shape == SolidShape::mesh) return;  // found as intersections
   std::size_t inside = 0;
   double deepest = 0.0;
   for (const Vec3& x : shape.positions) {
@@ -157,6 +165,7 @@ std::vector<std::string> doubtful(const Scene& scene) {
     doubt_core(d, cloth, e);
     doubt_stretch(d, cloth, e);
     doubt_jitter(d, cloth, e);
+    doubt_layers(d, cloth, e);
     for (const Solid& solid : scene.solids) {
       doubt_start(d, cloth, shape, solid);
       doubt_thickness(d, cloth, e, solid);

@@ -18,7 +18,7 @@ class TomlWriter final : public SchemaVisitor {
   void flag(const char* key, bool& value, const KeyInfo& info) override { line(key, value ? "true" : "false", info); }
   void text(const char* key, std::string& value, const KeyInfo& info) override { line(key, to_toml(value), info); }
   void file(const char* key, std::filesystem::path& value, const KeyInfo& info) override {
-    if (!info.unset) line(key, to_toml(std::filesystem::absolute(value).lexically_normal().string()), info);
+    if (info.applies && !info.unset) line(key, to_toml(std::filesystem::absolute(value).lexically_normal().string()), info);
   }
   void vector(const char* key, Vec3& value, const KeyInfo& info) override { line(key, to_toml(value), info); }
   void rotation(const char* key, Eigen::Quaterniond& value, const KeyInfo& info) override { line(key, to_toml(value), info); }

@@ -86,6 +86,19 @@ void describe_contact(SchemaVisitor& v, ContactOptions& contact) {
             {.doc = "solves per step, at most, until the contacts and their stick or slide no longer change", .min = 1, .max = 1000});
   v.number("touch_tolerance", contact.touch_tolerance,
            {.doc = "a node this close to a solid's thickened surface touches it", .unit = "m", .min = 0, .max = 0.1});
+  v.flag("self", contact.self, {.doc = "keeps cloth from passing through itself, other cloths and mesh solids"});
+  v.number("thickness", contact.thickness,
+           {.doc = "layers of cloth keep this far apart, middle to middle; 0: a tenth of the mean edge, at most 1 mm",
+            .unit = "m",
+            .min = 0,
+            .max = 1});
+  v.number("friction", contact.friction, {.doc = "Coulomb's μ of cloth on cloth", .min = 0, .max = 100});
+  v.integer("sweeps", contact.sweeps,
+            {.doc = "rounds of impulses, at most, before nodes that still collide are held as rigid zones", .min = 0, .max = 1000});
+  v.integer("check_every", contact.check_every,
+            {.doc = "steps from one exact check for intersections (stats.csv) to the next; 0: none", .min = 0, .max = 1e6});
+  v.flag("allow_intersections", contact.allow_intersections,
+         {.doc = "starts although the cloths intersect; what has passed through then may stay so"});
 }
 
 void describe_wind(SchemaVisitor& v, Wind& wind) {
@@ -131,7 +144,7 @@ void describe(SchemaVisitor& v, Scene& scene) {
   v.vector("gravity", scene.gravity, {.doc = "acceleration of everything; z is up", .unit = "m/s²"});
   v.table("time", {.doc = "Time steps and pictures."}, [&] { describe_time(v, scene.time); });
   v.table("solver", {.doc = "The linear solver."}, [&] { describe_solver(v, scene.solver); });
-  v.table("contact", {.doc = "Contact of cloth with solids."}, [&] { describe_contact(v, scene.contact); });
+  v.table("contact", {.doc = "Contact of cloth with solids, other cloth and itself."}, [&] { describe_contact(v, scene.contact); });
   v.table("wind", {.doc = "Air that moves."}, [&] { describe_wind(v, scene.wind); });
   v.list("cloth", scene.cloths, {.doc = "A piece of cloth; a scene has at least one.", .required = true},
          [&](Cloth& cloth) { describe_cloth(v, cloth); });

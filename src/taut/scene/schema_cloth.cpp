@@ -27,16 +27,32 @@ void describe_grid(SchemaVisitor& v, GridShape& grid) {
           "u and v span no area: give two edges that are not zero and not parallel");
 }
 
+void describe_tube(SchemaVisitor& v, TubeShape& tube) {
+  std::vector<Index> nodes{tube.around, tube.along};
+  v.integers("nodes", nodes, {.doc = "number of nodes around and along the axis", .min = 2, .max = 20000, .required = true, .count = 2});
+  tube.around = nodes[0], tube.along = nodes[1];
+  v.check(tube.around >= 3, "nodes", "a tube has at least 3 nodes around");
+  v.number("radius", tube.radius, {.doc = "of the tube", .unit = "m", .min = 0, .max = 1e6, .above_min = true, .required = true});
+  v.number("height", tube.height, {.doc = "along the axis", .unit = "m", .min = 0, .max = 1e6, .above_min = true, .required = true});
+}
+
 void describe_shape(SchemaVisitor& v, Cloth& cloth) {
   const bool file = cloth.from_file = v.given("mesh", cloth.from_file);
-  v.exactly_one(std::array{"grid", "mesh"});
+  const bool tube = cloth.is_tube = v.given("tube", cloth.is_tube);
+  v.exactly_one(std::array{"grid", "tube", "mesh"});
   v.table(
       "grid",
       {.doc =
            "A rectangular sheet: node (i, j) stands at origin + i/(nu-1) u + j/(nv-1) v and has the index j nu + i. Springs as Provot's.",
-       .unset = file},
+       .unset = file || tube},
       [&] { describe_grid(v, cloth.grid); });
-  constexpr const char* mesh_only = "a cloth with mesh (a grid is placed by its origin, u and v)";
+  v.table("tube",
+          {.doc = "A closed tube around the z axis, centred: node (i, j) is number i around and j along, its index j times the nodes around plus i. "
+                  "Springs as of a mesh.",
+           .unset = !tube},
+          [&] { describe_tube(v, cloth.tube); });
+  constexpr const char* mesh_only = "a cloth with mesh";
+  constexpr const char* placed_only = "a cloth with tube or mesh (a grid is placed by its origin, u and v)";
   v.file("mesh", cloth.mesh,
          {.doc = "OBJ or PLY file, relative to the scene file; stretch springs on edges, bend springs across them", .unset = !file});
   v.number("scale", cloth.scale,
@@ -44,7 +60,7 @@ void describe_shape(SchemaVisitor& v, Cloth& cloth) {
   int up = cloth.y_up ? 1 : 0;
   v.choose("up", up, up_names, {.doc = "the file's upward axis; `y` is turned to Taut's z", .applies = file, .only_for = mesh_only});
   cloth.y_up = up == 1;
-  describe_pose(v, cloth.placement, file, mesh_only);
+  describe_pose(v, cloth.placement, file || tube, placed_only);
 }
 
 void describe_material(SchemaVisitor& v, SpringMaterial& m) {
@@ -76,7 +92,7 @@ void describe_material(SchemaVisitor& v, SpringMaterial& m) {
 void check_nodes(SchemaVisitor& v, const Cloth& cloth, const std::vector<Index>& nodes) {
   const Index count = cloth.grid.node_count();
   for (const Index node : nodes)
-    v.check(cloth.from_file || node < count, "nodes",
+    v.check(!cloth.is_grid() || node < count, "nodes",
             "node " + std::to_string(node) + " is not on the grid: its " + std::to_string(cloth.grid.nu) + " x " +
                 std::to_string(cloth.grid.nv) + " nodes are numbered 0 to " + std::to_string(count - 1));
 }
@@ -85,17 +101,20 @@ void describe_pin(SchemaVisitor& v, const Cloth& cloth, Pin& pin) {
   v.exactly_one(std::array{"nodes", "corners", "edges"});
   v.integers("nodes", pin.where.nodes, {.doc = "by index, from 0", .min = 0, .unset = pin.where.nodes.empty()});
   check_nodes(v, cloth, pin.where.nodes);
-  constexpr const char* grid_only = "a cloth with grid (on a mesh pin nodes by index)";
+  constexpr const char* grid_only = "a cloth with grid (on a mesh or a tube pin nodes by index)";
+  constexpr const char* edges_only = "a cloth with grid or tube (on a mesh pin nodes by index)";
   v.choose_some("corners", pin.where.corners, corner_names,
                 {.doc = "of the grid: u0v0 is node (0, 0), u1v0 is (nu-1, 0), u0v1 is (0, nv-1), u1v1 the last",
                  .unset = pin.where.corners.empty(),
-                 .applies = !cloth.from_file,
+                 .applies = cloth.is_grid(),
                  .only_for = grid_only});
   v.choose_some("edges", pin.where.edges, edge_names,
-                {.doc = "all nodes on edges of the grid: i = 0 is u0, i = nu-1 is u1, j = 0 is v0, j = nv-1 is v1",
+                {.doc = "all nodes on edges of the grid: i = 0 is u0, i = nu-1 is u1, j = 0 is v0, j = nv-1 is v1; a tube has v0 and v1",
                  .unset = pin.where.edges.empty(),
                  .applies = !cloth.from_file,
-                 .only_for = grid_only});
+                 .only_for = edges_only});
+  for (const std::string& edge : pin.where.edges)
+    v.check(!cloth.is_tube || edge[0] == 'v', "edges", "a tube has no edge '" + edge + "': write \"v0\" (below) or \"v1\" (above)");
   v.vector("pivot", pin.pivot, {.doc = "the point about which the key frames turn", .unit = "m"});
   v.number("release", pin.release,
            {.doc = "when the nodes are let go; never when not given", .unit = "s", .min = 0, .max = 1e6, .unset = pin.release < 0});

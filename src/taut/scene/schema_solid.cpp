@@ -5,7 +5,8 @@
 namespace taut {
 
 namespace {
-constexpr std::array shape_names{"sphere", "plane", "cylinder", "box"};
+constexpr std::array up_names{"z", "y"};
+constexpr std::array shape_names{"sphere", "plane", "cylinder", "box", "mesh"};
 }
 
 void describe_solid(SchemaVisitor& v, Solid& solid) {
@@ -44,6 +45,25 @@ void describe_solid(SchemaVisitor& v, Solid& solid) {
             .required = true,
             .applies = box,
             .only_for = "a box"});
+  const bool mesh = solid.shape == SolidShape::mesh;
+  constexpr const char* mesh_only = "a mesh";
+  v.file("mesh", solid.mesh,
+         {.doc = "OBJ or PLY file, relative to the scene file; closed or open, cloth stays on the side where it starts",
+          .required = true,
+          .applies = mesh,
+          .only_for = mesh_only});
+  v.number("scale", solid.scale,
+           {.doc = "of the files' lengths: 0.01 for centimetres", .min = 1e-6, .max = 1e6, .applies = mesh, .only_for = mesh_only});
+  int up = solid.y_up ? 1 : 0;
+  v.choose("up", up, up_names, {.doc = "the files' upward axis; `y` is turned to Taut's z", .applies = mesh, .only_for = mesh_only});
+  solid.y_up = up == 1;
+  v.file("motion", solid.motion,
+         {.doc = "its vertices over time: PC2, raw float32 (.f32, .raw) or the first OBJ of a numbered sequence; linear in between, the last held",
+          .unset = solid.motion.empty(),
+          .applies = mesh,
+          .only_for = mesh_only});
+  v.number("motion_rate", solid.motion_rate,
+           {.doc = "samples of `motion` in a second", .unit = "Hz", .min = 1e-3, .max = 1e6, .applies = mesh, .only_for = mesh_only});
   v.number("friction", solid.friction, {.doc = "Coulomb's μ, at rest and sliding", .min = 0, .max = 100});
   v.number("thickness", solid.thickness,
            {.doc = "cloth is kept this far from the surface; a little hides that triangles cut corners", .unit = "m", .min = 0, .max = 1});

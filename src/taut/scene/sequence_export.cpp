@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "taut/base/error.h"
-#include "taut/scene/solid_shapes.h"
 
 namespace taut {
 
@@ -27,21 +26,21 @@ SequenceObject cloth_object(const ClothModel& cloth, const ClothPart& part) {
   return object;
 }
 
-SequenceObject solid_object(const Solid& solid, std::size_t number) {
-  const TriangleMesh mesh = mesh_of(solid, 0.0, solid_segments).mesh;
-  return {.name = solid.name.empty() ? fmt::format("solid_{}", number) : solid.name,
+SequenceObject solid_object(const SolidShapes& solids, std::size_t k) {
+  const TriangleMesh mesh = solids.at(k, 0.0).mesh;
+  return {.name = solids.name(k),
           .triangles = mesh.triangles,
           .texcoords = mesh.texcoords,
           .points = static_cast<Index>(mesh.positions.size()),
-          .moves = moves(solid),
+          .moves = solids.moves(k),
           .is_cloth = false,
           .stem = {}};
 }
 
-std::vector<SequenceObject> objects_of(const ResultFrames& frames) {
+std::vector<SequenceObject> objects_of(const ResultFrames& frames, const SolidShapes& solids) {
   std::vector<SequenceObject> objects;
   for (const ClothPart& part : frames.cloth().parts()) objects.push_back(cloth_object(frames.cloth(), part));
-  for (std::size_t k = 0; k < frames.scene().solids.size(); ++k) objects.push_back(solid_object(frames.scene().solids[k], k));
+  for (std::size_t k = 0; k < solids.size(); ++k) objects.push_back(solid_object(solids, k));
   return objects;
 }
 
@@ -62,7 +61,11 @@ std::vector<double> part_of(const Values& values, const ClothPart& part) {
 }  // namespace
 
 SequenceExport::SequenceExport(const ResultFrames& frames, const SequenceExportOptions& options)
-    : frames_(frames), options_(options), up_(options.up.value_or(sequence_format(options.format).usual_up)), next_(options.first) {
+    : frames_(frames),
+      solids_(frames.scene(), solid_segments),
+      options_(options),
+      up_(options.up.value_or(sequence_format(options.format).usual_up)),
+      next_(options.first) {
   check(options);
   if (options.format == "gltf" && up_ != UpAxis::y) throw InputError("glTF files are Y-up by definition; leave out --up z");
   writer_ = make_sequence_writer(sequence_format(options.format),
@@ -73,7 +76,7 @@ SequenceExport::SequenceExport(const ResultFrames& frames, const SequenceExportO
                                   .frame_interval = frames.interval(),
                                   .up = up_,
                                   .metres_per_unit = 1.0 / options.scale},
-                                 objects_of(frames));
+                                 objects_of(frames, solids_));
 }
 
 std::vector<ObjectFrame> SequenceExport::objects_at(int frame) const {
@@ -91,10 +94,9 @@ std::vector<ObjectFrame> SequenceExport::objects_at(int frame) const {
     object.fields = {std::move(velocity), {"stretch", 1, part_of(fields.stretch, part)}, {"contact", 1, part_of(fields.contact, part)}};
     objects.push_back(std::move(object));
   }
-  for (const Solid& solid : frames_.scene().solids) {
+  for (std::size_t k = 0; k < solids_.size(); ++k) {
     ObjectFrame object;
-    for (const Vec3& point : mesh_of(solid, frames_.time_of(frame), solid_segments).mesh.positions)
-      object.points.push_back(options_.scale * turned(point));
+    for (const Vec3& point : solids_.at(k, frames_.time_of(frame)).mesh.positions) object.points.push_back(options_.scale * turned(point));
     objects.push_back(std::move(object));
   }
   return objects;

@@ -9,6 +9,7 @@
 
 #include "taut/io/sequence_writer.h"
 #include "taut/scene/result_frames.h"
+#include "taut/scene/solid_shapes.h"
 
 namespace taut {
 
@@ -38,6 +39,7 @@ class SequenceExport {
   Vec3 turned(const Vec3& v) const { return up_ == UpAxis::z ? v : Vec3(v.x(), v.z(), -v.y()); }
 
   const ResultFrames& frames_;
+  SolidShapes solids_;
   SequenceExportOptions options_;
   UpAxis up_;
   int next_;

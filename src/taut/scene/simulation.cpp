@@ -26,16 +26,18 @@ Simulation::Simulation(Scene scene)
     : scene_(std::move(scene)),
       cloth_(scene_),
       contact_(scene_.solids, cloth_.nodes(), scene_.contact),
+      surface_contact_(SurfaceContact::wanted(scene_) ? std::make_unique<SurfaceContact>(scene_, cloth_) : nullptr),
       stepper_(cloth_.nodes(), cloth_.force_models(), cloth_.external(), scene_.time.integrator, scene_.solver, scene_.time.newton),
       state_(cloth_.start()) {
   // Halved steps keep the core of whole ones, and its symbolic work.
   stepper_.choose_core(scene_.time.step);
 }
 
-void Simulation::restore(State state, ContactState contacts, int steps, std::span<const double> solver_memory) {
+void Simulation::restore(State state, ContactState contacts, int steps, std::span<const double> solver_memory, ZoneState zones) {
   stepper_.solver().restore_memory(solver_memory);
   state_ = std::move(state);
   contact_.restore(std::move(contacts));
+  if (surface_contact_) surface_contact_->restore(std::move(zones));
   steps_ = steps;
 }
 
@@ -52,6 +54,7 @@ Status Simulation::step(StepRecord& record) {
   state_.time = ++steps_ * scene_.time.step;
   record.time = state_.time;
   note_state(record);
+  look_for_intersections(record);
   record.step_ms = timer.milliseconds();
   return {};
 }
@@ -61,14 +64,15 @@ Status Simulation::advance(double h, int halvings, StepRecord& record) {
   if (status.ok() && halvings == 0 && on_solved) on_solved(*this, last_summary_);
   const bool may_halve = halvings < scene_.time.max_halvings;
   if (may_halve && (!status.ok() || overshoot() > scene_.time.overshoot_limit)) return advance_halves(h, halvings, record);
-  if (status.ok()) accept(record);
-  return status;
+  if (status.ok()) status = accept(h, record);
+  return status.ok() || !may_halve ? status : advance_halves(h, halvings, record);
 }
 
 Status Simulation::advance_halves(double h, int halvings, StepRecord& record) {
   ++record.retries;
   const State state = state_;
   const ContactState contacts = contact_.state();
+  const ZoneState zones = surface_contact_ ? surface_contact_->state() : ZoneState{};
   Status status;
   for (int half = 0; half < 2 && status.ok(); ++half) {
     stepper_.start_afresh(state_);
@@ -79,6 +83,7 @@ Status Simulation::advance_halves(double h, int halvings, StepRecord& record) {
   } else {
     state_ = state;
     contact_.restore(contacts);
+    if (surface_contact_) surface_contact_->restore(zones);
     if (halvings + 1 == scene_.time.max_halvings) status.message += fmt::format(" (also with steps of {:.3g} s)", h / 2);
   }
   return status;
@@ -95,35 +100,74 @@ double Simulation::overshoot() const {
 Status Simulation::try_step(double h, StepRecord& record) {
   pins_.reset(cloth_.nodes());
   cloth_.constrain_pins(state_.time, h, state_.x, pins_);
+  held_ = pins_;
+  if (surface_contact_) surface_contact_->hold_zones(state_, h, held_);
   stepper_.begin(state_, h);
   record.assemble_ms += stepper_.assemble_ms();
   Timer contact_timer;
   std::vector<Vec3> predicted(state_.x.size());
   for (std::size_t i = 0; i < predicted.size(); ++i) predicted[i] = state_.x[i] + h * state_.v[i];
-  contact_.begin_step(state_.time, h, state_.x, predicted, pins_);
+  contact_.begin_step(state_.time, h, state_.x, predicted, held_);
   record.contact_ms += contact_timer.milliseconds();
   return solve_passes(record);
 }
 
-void Simulation::accept(StepRecord& record) {
+Status Simulation::correct(double h, std::vector<Vec3>& corrected, bool& changed, StepRecord& record) {
+  const int moved = contact_.move_out(corrected);
+  changed = moved > 0;
+  if (!surface_contact_) return {};
+  Status status = surface_contact_->correct(state_.time, h, state_.x, pins_, contact_, corrected, changed);
+  note_surface_contact(record);
+  return status;
+}
+
+Status Simulation::accept(double h, StepRecord& record) {
   Timer contact_timer;
   std::vector<Vec3> corrected(stepper_.x_end().begin(), stepper_.x_end().end());
-  const int moved = contact_.finish(corrected);
-  record.contact_moved += moved;
-  record.deepest_m = std::max(record.deepest_m, contact_.deepest());
-  record.contacts = contact_.contacts();
+  bool changed = false;
+  const Status status = correct(h, corrected, changed, record);
   record.contact_ms += contact_timer.milliseconds();
-  if (moved > 0) {
+  if (!status.ok()) return status;
+  contact_.keep();
+  if (surface_contact_) surface_contact_->keep();
+  record.contact_moved += contact_.counts().moved;
+  record.deepest_m = std::max(record.deepest_m, contact_.deepest());
+  record.contacts = contact_.contacts() + (surface_contact_ ? surface_contact_->counts().pushing : 0);
+  if (changed) {
     stepper_.commit(state_, corrected);
   } else {
     stepper_.commit(state_);
   }
+  return {};
+}
+
+void Simulation::note_surface_contact(StepRecord& record) const {
+  const ClothContactCounts& counts = surface_contact_->counts();
+  record.pairs_tested += counts.tested;
+  record.near_pairs = counts.near;
+  record.pushing_pairs = counts.pushing;
+  record.impacts += counts.impacts;
+  record.zones = std::max(record.zones, counts.zones);
+  record.zone_nodes = std::max(record.zone_nodes, counts.zone_nodes);
+  record.largest_zone = std::max(record.largest_zone, counts.largest_zone);
+  record.near_ms += counts.near_ms;
+  record.impulse_ms += counts.impulse_ms;
+  record.detect_ms += counts.detect_ms;
+  record.zone_ms += counts.zone_ms;
+}
+
+void Simulation::look_for_intersections(StepRecord& record) {
+  const int every = scene_.contact.check_every;
+  if (!surface_contact_ || every == 0 || steps_ % every != 0) return;
+  Timer timer;
+  record.intersections = static_cast<int>(surface_contact_->intersections(state_.time, state_.x).size());
+  record.check_ms = timer.milliseconds();
 }
 
 Status Simulation::solve_passes(StepRecord& record) {
   SolveSummary summary;
   for (bool again = true; again;) {
-    constraints_ = pins_;
+    constraints_ = held_;
     Timer contact_timer;
     contact_.constrain(constraints_);
     record.contact_ms += contact_timer.milliseconds();

@@ -1,18 +1,20 @@
 #pragma once
 // A scene in motion: the loop that joins contact and the step.
 //
-//   step():  pins and contact give constraints -> assemble -> [solve -> contact judges the constraint forces] until the contacts agree ->
-//   commit
+//   step():  pins, zones and contact give constraints -> assemble -> [solve -> contact judges the constraint forces] until the contacts
+//   agree -> cloth is kept from passing through cloth (scene/surface_contact.h) -> commit
 //
 // A solve that fails is repeated by a direct method (counted in `fallbacks`, named in the record). If that fails too, or a stretch spring
 // overshoots by more than TimeOptions::overshoot_limit (force/overshoot.h), the step is redone as two of half the length, and each of them
-// likewise, down to h / 2^max_halvings (counted in `retries`). What overshoots there is accepted; what cannot be solved there makes step()
-// return a bad status with the step and time in its message, and the state stays that of the step before.
+// likewise, down to h / 2^max_halvings (counted in `retries`). So it is if cloth cannot be kept from passing through itself. What overshoots
+// there is accepted; what cannot be solved or kept apart there makes step() return a bad status with the step and time in its message, and
+// the state stays that of the step before.
 
 #include <functional>
 
 #include "taut/contact/solid_contact.h"
 #include "taut/scene/cloth_model.h"
+#include "taut/scene/surface_contact.h"
 #include "taut/step/stepper.h"
 
 namespace taut {
@@ -39,6 +41,11 @@ struct StepRecord {
   int retries = 0;            // times that the step, or a part of it, was redone with half the length
   int contact_moved = 0;      // nodes moved out of solids after the last pass
   double deepest_m = 0.0;     // how deep the deepest of them was
+  // Cloth with cloth and mesh solids (contact/cloth_contact.h); of a step in parts, sums, of zones the largest.
+  Offset pairs_tested = 0;
+  int near_pairs = 0, pushing_pairs = 0, impacts = 0, zones = 0, zone_nodes = 0, largest_zone = 0;
+  double near_ms = 0.0, impulse_ms = 0.0, detect_ms = 0.0, zone_ms = 0.0, check_ms = 0.0;
+  int intersections = -1;  // -1: not looked for
 };
 
 class Simulation {
@@ -57,8 +64,12 @@ class Simulation {
   const Stepper& stepper() const { return stepper_; }
   const ConstraintSet& constraints() const { return constraints_; }
 
+  // Null where `contact.self` is off and no solid is a mesh.
+  SurfaceContact* surface_contact() { return surface_contact_.get(); }
+  const SurfaceContact* surface_contact() const { return surface_contact_.get(); }
+
   // Goes on from a checkpoint.
-  void restore(State state, ContactState contacts, int steps, std::span<const double> solver_memory = {});
+  void restore(State state, ContactState contacts, int steps, std::span<const double> solver_memory = {}, ZoneState zones = {});
   // Called after the last pass of a step, before it is committed: the solved system is in stepper().system(). For dumps and benches.
   // A step that is then redone in halves calls it once, for the whole.
   std::function<void(Simulation&, const SolveSummary&)> on_solved;
@@ -67,7 +78,10 @@ class Simulation {
   Status advance(double h, int halvings, StepRecord& record);
   Status advance_halves(double h, int halvings, StepRecord& record);
   Status try_step(double h, StepRecord& record);
-  void accept(StepRecord& record);
+  Status correct(double h, std::vector<Vec3>& corrected, bool& changed, StepRecord& record);
+  Status accept(double h, StepRecord& record);
+  void note_surface_contact(StepRecord& record) const;
+  void look_for_intersections(StepRecord& record);
   double overshoot() const;
   Status solve_passes(StepRecord& record);
   SolveSummary solve_or_fall_back(StepRecord& record);
@@ -77,9 +91,10 @@ class Simulation {
   Scene scene_;
   ClothModel cloth_;
   SolidContact contact_;
+  std::unique_ptr<SurfaceContact> surface_contact_;
   Stepper stepper_;
   std::unique_ptr<ConstrainedSolver> fallback_;
-  ConstraintSet pins_, constraints_;
+  ConstraintSet pins_, held_, constraints_;  // held: pins and zones
   State state_;
   SolveSummary last_summary_;
   int steps_ = 0;

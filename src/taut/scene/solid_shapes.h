@@ -1,16 +1,33 @@
 #pragma once
-// Solids as meshes, for pictures and export.
+// The scene's solids as meshes over time, for pictures and export.
 
-#include "taut/contact/solid.h"
+#include <map>
+
 #include "taut/picture/solid_mesh.h"
+#include "taut/scene/mesh_solid.h"
+#include "taut/scene/scene.h"
 
 namespace taut {
 
-// Where the solid is at `time` (s). A plane, which has no end, becomes a disc of 3 m radius about its own origin. `segments`: corners
-// around a circle.
-SolidMesh mesh_of(const Solid& solid, double time, int segments = 96);
+class SolidShapes {
+ public:
+  // `segments`: corners around a circle. A plane, which has no end, becomes a disc of 3 m radius about its own origin.
+  // Reads the files of solids that are meshes; throws InputError as MeshSolid.
+  explicit SolidShapes(const Scene& scene, int segments = 96);
 
-// Is the pose ever another than at time 0?
-bool moves(const Solid& solid);
+  std::size_t size() const { return scene_.solids.size(); }
+  const Solid& solid(std::size_t k) const { return scene_.solids[k]; }
+  // Its name in the scene, or solid_K.
+  std::string name(std::size_t k) const;
+  // Is the shape ever another than at time 0?
+  bool moves(std::size_t k) const;
+  // At this time (s).
+  SolidMesh at(std::size_t k, double time) const;
+
+ private:
+  const Scene& scene_;
+  int segments_;
+  std::map<std::size_t, MeshSolid> meshes_;  // by solid
+};
 
 }  // namespace taut

@@ -1,0 +1,117 @@
+#pragma once
+// What keeps cloth from passing through itself, other cloths and solids' meshes: corrects the positions at the end of a step so that no
+// pair of the surface meets on the way, or says that it cannot (docs/mathematics.md, 6; Bridson, Fedkiw & Anderson 2002; paper Section 7).
+//
+//   x0            m, positions at the start, without intersections
+//   x1            m, where the dynamics would end; changed in place
+//   thickness     m: how far apart layers keep when they can
+//   separation    m: how far apart they surely stay: continuous detection reports whatever comes nearer
+//
+//   1  repulsion  pairs nearer than their thickness at x0 must not come nearer, and go a fifth of what is missing apart (repulsion.h)
+//   2  impulses   pairs that collide on the way end apart on the side where they were, with Coulomb friction (impulses.h); repeated for the
+//                 pairs of moved nodes until none collides, at most `sweeps` times. Nodes stay out of analytic solids likewise
+//   3  zones      what still collides moves as rigid bodies, merged as they grow, until nothing collides (rigid_zones.h)
+//
+// A pair is searched again whenever one of its nodes has moved, so that at the end every pair has been proved free on its final way, or
+// lies in one zone, inside which nothing can meet.
+//
+// The average velocities (x1 - x0)/h keep their linear momentum, but for what pins and solids take. Deterministic: the same bits for any
+// number of threads. One step at a time.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "taut/base/status.h"
+#include "taut/contact/contact_options.h"
+#include "taut/contact/pair_search.h"
+#include "taut/contact/rigid_zones.h"
+#include "taut/contact/solid_contact.h"
+
+namespace taut {
+
+// A cloth or a solid's mesh, in the order of the surface's parts.
+struct CollisionBody {
+  std::string name;
+  bool is_solid = false;
+  double thickness = 0.0;  // m, of a solid: kept to cloth; 0: as cloth to cloth
+  double friction = 0.0;   // of a solid with cloth
+};
+
+struct ClothContactStep {
+  std::span<const Vec3> x0;              // one each a vertex of the surface, like all that follows
+  std::span<const double> inverse_mass;  // 1/kg, 0 for what is held
+  std::span<const std::uint8_t> held;    // not 0: ends where x1 says
+  const SolidContact* solids = nullptr;  // analytic ones, begun for this step; its nodes are the first vertices
+};
+
+struct ClothContactCounts {
+  Offset tested = 0;  // pairs of the broad phase, of all passes
+  int near = 0;       // pairs nearer than their thickness at the start
+  int pushing = 0;    // rows with an impulse at the end
+  int impacts = 0;    // collisions found on the way, in all sweeps
+  int sweeps = 0;
+  int zones = 0, zone_nodes = 0, largest_zone = 0;
+  int zone_rounds = 0;
+  int inexact = 0;  // zones that turned too far to keep all angular momentum
+  double near_ms = 0.0, impulse_ms = 0.0, detect_ms = 0.0, zone_ms = 0.0;
+};
+
+// Nodes of zones, for the next solve: they go on with their velocity and are eliminated. Ascending.
+struct ZoneState {
+  std::vector<Index> node;
+  std::vector<std::uint8_t> rides;  // 1: with something held or a solid, so that gravity does not move it
+  bool operator==(const ZoneState&) const = default;
+};
+
+class ClothContact {
+ public:
+  // start: m, one a vertex, any shape. mass: kg, one a vertex; of solids' vertices ignored. thickness > 0: resolved, see default_thickness.
+  ClothContact(CollisionSurface surface, std::vector<CollisionBody> bodies, std::span<const Vec3> start, std::vector<double> mass,
+               ContactOptions options);
+
+  // On failure x1 is not to be used, and the message says which nodes, cloths and solids cannot be kept apart.
+  Status resolve(const ClothContactStep& step, std::span<Vec3> x1);
+
+  const CollisionSurface& surface() const { return *surface_; }
+  const std::vector<CollisionBody>& bodies() const { return bodies_; }
+  const ClothContactCounts& counts() const { return counts_; }
+  const ContactOptions& options() const { return options_; }
+  double separation() const { return separation_; }
+  // Of the last resolve: the nodes that were in zones.
+  const ZoneState& zone_state() const { return zones_; }
+  // After a failure: the nodes that the message is about.
+  const std::vector<Index>& trouble() const { return trouble_; }
+  PairSearch& search() { return search_; }
+
+ private:
+  struct Work;
+  bool ignored(const CollisionPair& pair) const { return !options_.self && !solid_of(pair); }
+  double thickness_of(const CollisionPair& pair) const;
+  double friction_of(const CollisionPair& pair) const;
+  const CollisionBody* solid_of(const CollisionPair& pair) const;
+  void repel(Work& work);
+  bool sweep(Work& work, int round);
+  void find_trouble(Work& work, std::span<const std::uint8_t> moved, bool same_way);
+  Status hold(Work& work);
+  Status unresolved(const Work& work, std::span<const Index> nodes, const std::string& why);
+  Status stuck(const Work& work);
+  Status contradiction(const Work& work, const RigidZone& zone);
+  std::string place(Index vertex, const Vec3& x) const;
+  void note(const Work& work);
+
+  std::unique_ptr<CollisionSurface> surface_;  // fixed in memory: the broad phase refers to it
+  std::vector<CollisionBody> bodies_;
+  std::vector<double> mass_;
+  ContactOptions options_;
+  double separation_, largest_thickness_;
+  PairSearch search_;
+  ClothContactCounts counts_;
+  ZoneState zones_;
+  std::vector<Index> trouble_;
+};
+
+// A tenth of the mean edge, at most 1 mm: less than what folding cloth can give way, more than rounding. m.
+double default_thickness(const CollisionSurface& surface, std::span<const Vec3> rest);
+
+}  // namespace taut

@@ -1,0 +1,95 @@
+#include "taut/contact/contact_row.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace taut {
+
+namespace {
+
+// Of the tolerance: what is not worth that a node's pairs are searched again.
+constexpr double negligible = 0.1;
+
+void push(const ContactRow& row, const Vec3& impulse, std::span<const double> inverse_mass, std::span<Vec3> x1,
+          std::span<std::uint8_t> moved) {
+  for (std::size_t k = 0; k < 4 && row.node[k] >= 0; ++k) {
+    const Index i = row.node[k];
+    const double share = row.weight[k] * inverse_mass[i];
+    if (share == 0.0) continue;
+    x1[i] += share * impulse;
+    moved[i] = 1;
+  }
+}
+
+// What friction adds to bring the tangential motion to that of the other side, within Coulomb's cone.
+Vec3 friction_step(const ContactRow& row, std::span<const Vec3> x0, std::span<const Vec3> x1) {
+  const Vec3 motion = separation(row, x1) - separation(row, x0) - row.carried;
+  const Vec3 slip = motion - row.normal.dot(motion) * row.normal;
+  Vec3 wanted = row.tangential - slip / row.inverse_mass;
+  const double limit = row.friction * row.lambda, size = wanted.norm();
+  if (size > limit) wanted *= limit / size;
+  return wanted - row.tangential;
+}
+
+// Returns how far the row's points moved against one another.
+double satisfy(ContactRow& row, std::span<const double> inverse_mass, std::span<const Vec3> x0, std::span<Vec3> x1,
+               std::span<std::uint8_t> moved, double tolerance) {
+  const double missing = row.target - row.normal.dot(separation(row, x1));
+  const double lambda = std::max(0.0, row.lambda + missing / row.inverse_mass);
+  if (lambda == 0.0 && row.lambda == 0.0) return 0.0;
+  Vec3 impulse = Vec3::Zero();
+  double motion = std::abs(lambda - row.lambda) * row.inverse_mass;
+  if (motion > negligible * tolerance) {
+    impulse = (lambda - row.lambda) * row.normal;
+    row.lambda = lambda;
+  } else {
+    motion = 0.0;
+  }
+  if (motion > 0.0) push(row, impulse, inverse_mass, x1, moved);
+  if (row.friction == 0.0) return motion;
+  const Vec3 tangential = friction_step(row, x0, x1);
+  const double sideways = tangential.norm() * row.inverse_mass;
+  if (sideways <= negligible * tolerance) return motion;
+  row.tangential += tangential;
+  push(row, tangential, inverse_mass, x1, moved);
+  return std::max(motion, sideways);
+}
+
+bool is_awake(const ContactRow& row, std::span<const std::uint8_t> awake) {
+  for (std::size_t k = 0; k < 4 && row.node[k] >= 0; ++k)
+    if (awake[row.node[k]]) return true;
+  return false;
+}
+
+void wake(const ContactRow& row, std::span<std::uint8_t> awake) {
+  for (std::size_t k = 0; k < 4 && row.node[k] >= 0; ++k) awake[row.node[k]] = 1;
+}
+
+}  // namespace
+
+Vec3 separation(const ContactRow& row, std::span<const Vec3> x) {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t k = 0; k < 4 && row.node[k] >= 0; ++k) sum += row.weight[k] * x[row.node[k]];
+  return sum;
+}
+
+void weigh(ContactRow& row, std::span<const double> inverse_mass) {
+  row.inverse_mass = 0.0;
+  for (std::size_t k = 0; k < 4 && row.node[k] >= 0; ++k) row.inverse_mass += row.weight[k] * row.weight[k] * inverse_mass[row.node[k]];
+}
+
+void satisfy_rows(std::span<ContactRow> rows, std::span<const double> inverse_mass, std::span<const Vec3> x0, std::span<Vec3> x1,
+                  std::span<std::uint8_t> awake, std::span<std::uint8_t> moved, int iterations, double tolerance) {
+  for (int k = 0; k < iterations; ++k) {
+    double largest = 0.0;
+    for (ContactRow& row : rows) {
+      if (row.inverse_mass == 0.0 || !is_awake(row, awake)) continue;
+      const double motion = satisfy(row, inverse_mass, x0, x1, moved, tolerance);
+      if (motion > 0.0) wake(row, awake);
+      largest = std::max(largest, motion);
+    }
+    if (largest <= tolerance) return;
+  }
+}
+
+}  // namespace taut

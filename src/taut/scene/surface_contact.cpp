@@ -1,0 +1,157 @@
+#include "taut/scene/surface_contact.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "taut/base/error.h"
+
+namespace taut {
+
+namespace {
+
+CollisionSurface surface_of(const ClothModel& cloth, const std::vector<MeshSolid>& solids) {
+  std::vector<std::vector<Triangle>> own;
+  for (const ClothPart& part : cloth.parts()) {
+    const auto all = std::span(cloth.surface().triangles).subspan(part.first_triangle, part.triangle_count);
+    std::vector<Triangle>& triangles = own.emplace_back(all.begin(), all.end());
+    for (Triangle& t : triangles)
+      for (Index& node : t) node -= part.first_node;
+  }
+  std::vector<SurfacePart> parts;
+  for (std::size_t c = 0; c < own.size(); ++c) parts.push_back({cloth.parts()[c].node_count, own[c], false});
+  for (const MeshSolid& solid : solids) parts.push_back({solid.vertices(), solid.triangles(), true});
+  return join_surfaces(parts);
+}
+
+std::vector<CollisionBody> bodies_of(const ClothModel& cloth, const std::vector<MeshSolid>& solids) {
+  std::vector<CollisionBody> bodies;
+  for (const ClothPart& part : cloth.parts()) bodies.push_back({part.name});
+  for (const MeshSolid& solid : solids) bodies.push_back({solid.solid().name, true, solid.solid().thickness, solid.solid().friction});
+  return bodies;
+}
+
+}  // namespace
+
+SurfaceContact::SurfaceContact(const Scene& scene, const ClothModel& cloth) : gravity_(scene.gravity), nodes_(cloth.nodes()) {
+  for (const Solid& solid : scene.solids)
+    if (solid.shape == SolidShape::mesh) solids_.emplace_back(solid, scene.folder);
+  CollisionSurface surface = surface_of(cloth, solids_);
+  ContactOptions options = scene.contact;
+  std::vector<Vec3> start = cloth.start().x;
+  start.resize(static_cast<std::size_t>(surface.vertices));
+  place_solids(0.0, start);
+  if (options.thickness == 0.0) options.thickness = default_thickness(surface, start);
+  const auto masses = cloth.external().masses();
+  mass_.assign(masses.begin(), masses.end());
+  mass_.resize(start.size(), 0.0);
+  contact_ = std::make_unique<ClothContact>(std::move(surface), bodies_of(cloth, solids_), start, mass_, options);
+  inverse_mass_.resize(mass_.size(), 0.0);
+  held_.resize(mass_.size(), 1);
+  if (!options.allow_intersections) refuse_intersections(cloth.start().x);
+}
+
+bool SurfaceContact::wanted(const Scene& scene) {
+  return scene.contact.self || std::ranges::any_of(scene.solids, [](const Solid& s) { return s.shape == SolidShape::mesh; });
+}
+
+void SurfaceContact::place_solids(double time, std::vector<Vec3>& x) const {
+  std::size_t first = static_cast<std::size_t>(nodes_);
+  for (const MeshSolid& solid : solids_) {
+    const auto count = static_cast<std::size_t>(solid.vertices());
+    solid.positions(time, std::span(x).subspan(first, count));
+    first += count;
+  }
+}
+
+void SurfaceContact::refuse_intersections(std::span<const Vec3> start) {
+  constexpr std::size_t most_named = 5;
+  const std::vector<Intersection> found = intersections(0.0, start);
+  if (found.empty()) return;
+  std::string text = fmt::format("cloth intersects at the start, at {} places:", found.size());
+  for (std::size_t k = 0; k < std::min(found.size(), most_named); ++k) text += "\n  " + describe(found[k]);
+  if (found.size() > most_named) text += fmt::format("\n  and {} more", found.size() - most_named);
+  throw InputError(
+      text + "\nMove them apart, or start as it is with contact.allow_intersections = true; what has passed through may then stay so");
+}
+
+void SurfaceContact::hold_zones(const State& state, double h, ConstraintSet& constraints) const {
+  for (std::size_t k = 0; k < kept_.node.size(); ++k) {
+    const Index node = kept_.node[k];
+    if (constraints.ndof(node) == 0) continue;
+    const Vec3 fall = kept_.rides[k] ? Vec3(Vec3::Zero()) : Vec3(h * h * gravity_);
+    constraints.fix(node, h * state.v[node] + fall);
+  }
+}
+
+void SurfaceContact::weigh_nodes(const ConstraintSet& pins) {
+  for (Index i = 0; i < nodes_; ++i) {
+    held_[i] = pins.ndof(i) == 0;
+    inverse_mass_[i] = held_[i] ? 0.0 : 1.0 / mass_[i];
+  }
+}
+
+Status SurfaceContact::correct(double t, double h, std::span<const Vec3> x0, const ConstraintSet& pins, const SolidContact& solids,
+                               std::span<Vec3> x_end, bool& changed) {
+  weigh_nodes(pins);
+  x0_.assign(x0.begin(), x0.end());
+  x1_.assign(x_end.begin(), x_end.end());
+  for (auto* x : {&x0_, &x1_}) x->resize(mass_.size());
+  place_solids(t, x0_);
+  place_solids(t + h, x1_);
+  const Status status = contact_->resolve({x0_, inverse_mass_, held_, &solids}, x1_);
+  if (!status.ok()) return status;
+  for (Index i = 0; i < nodes_; ++i) {
+    if (x1_[i] == x_end[i]) continue;
+    x_end[i] = x1_[i];
+    changed = true;
+  }
+  return {};
+}
+
+void SurfaceContact::keep() {
+  const ZoneState held = std::move(kept_);
+  kept_ = {};
+  const ZoneState& zones = contact_->zone_state();
+  for (std::size_t k = 0; k < zones.node.size(); ++k) {
+    if (std::ranges::binary_search(held.node, zones.node[k])) continue;
+    kept_.node.push_back(zones.node[k]);
+    kept_.rides.push_back(zones.rides[k]);
+  }
+}
+
+void SurfaceContact::restore(ZoneState state) {
+  const bool ordered = std::ranges::is_sorted(state.node, std::ranges::less_equal{});
+  const bool inside = state.node.empty() || (state.node.front() >= 0 && state.node.back() < nodes_);
+  if (!ordered || !inside || state.rides.size() != state.node.size())
+    throw InputError(fmt::format("zones: expected ascending nodes below {}: the checkpoint belongs to another scene", nodes_));
+  kept_ = std::move(state);
+}
+
+std::vector<Vec3> SurfaceContact::positions(double time, std::span<const Vec3> x) const {
+  std::vector<Vec3> all(x.begin(), x.end());
+  all.resize(mass_.size());
+  place_solids(time, all);
+  return all;
+}
+
+std::vector<Intersection> SurfaceContact::intersections(double time, std::span<const Vec3> x) {
+  const std::vector<Vec3> all = positions(time, x);
+  return find_intersections(contact_->search().broad_phase(), all);
+}
+
+std::string SurfaceContact::describe(const Intersection& intersection) const {
+  const CollisionSurface& surface = contact_->surface();
+  const EdgeVertices& edge = surface.edges[intersection.edge];
+  const Triangle& triangle = surface.triangles[intersection.triangle];
+  const auto name = [&](Index vertex) {
+    const CollisionBody& body = contact_->bodies()[surface.body[vertex]];
+    return fmt::format("{} '{}'", body.is_solid ? "solid" : "cloth", body.name);
+  };
+  const auto first = [&](Index vertex) { return std::ranges::lower_bound(surface.body, surface.body[vertex]) - surface.body.begin(); };
+  return fmt::format("the edge between nodes {} and {} of {} and the triangle {}, {}, {} of {}", edge[0] - first(edge[0]),
+                     edge[1] - first(edge[1]), name(edge[0]), triangle[0] - first(triangle[0]), triangle[1] - first(triangle[0]),
+                     triangle[2] - first(triangle[0]), name(triangle[0]));
+}
+
+}  // namespace taut

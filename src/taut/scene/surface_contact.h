@@ -1,0 +1,67 @@
+#pragma once
+// Joins contact/cloth_contact.h to the loop: builds the surface of all cloths and mesh solids, says what each node may do in a step, and
+// keeps zones from one step to the next.
+//
+//   before the solve   hold_zones: nodes that were in a rigid zone go on with their rigid velocity as ndof 0 and are eliminated, for one
+//   step;
+//                      then they are free again, unless they collide again later
+//   after it           correct: the end positions without a collision, or why not
+//
+// Nodes are the surface's first vertices, in their order; solids' vertices follow.
+
+#include <memory>
+
+#include "taut/contact/cloth_contact.h"
+#include "taut/contact/intersection.h"
+#include "taut/scene/cloth_model.h"
+#include "taut/scene/mesh_solid.h"
+
+namespace taut {
+
+class SurfaceContact {
+ public:
+  // Reads the solids' meshes. Throws InputError as MeshSolid, and when cloth intersects itself or a solid at the start and the scene does
+  // not allow it.
+  SurfaceContact(const Scene& scene, const ClothModel& cloth);
+  // Whether the scene needs it: contact.self, or a solid that is a mesh.
+  static bool wanted(const Scene& scene);
+
+  void hold_zones(const State& state, double h, ConstraintSet& constraints) const;
+
+  // The step [t, t + h] from x0. pins: what holds nodes whatever happens. x_end is changed; true in `changed` if any node was moved.
+  Status correct(double t, double h, std::span<const Vec3> x0, const ConstraintSet& pins, const SolidContact& solids, std::span<Vec3> x_end,
+                 bool& changed);
+  // The corrected step counts: its zones are held in the next.
+  void keep();
+
+  // All vertices of the surface at this time: the cloths' at x, then the solids'.
+  std::vector<Vec3> positions(double time, std::span<const Vec3> x) const;
+  // At this time, of the cloths at x.
+  std::vector<Intersection> intersections(double time, std::span<const Vec3> x);
+  // "cloth 'a', triangle 12, and cloth 'b', triangle 40": where the first of them is.
+  std::string describe(const Intersection& intersection) const;
+
+  std::span<const MeshSolid> solids() const { return solids_; }
+  const ClothContactCounts& counts() const { return contact_->counts(); }
+  const ClothContact& contact() const { return *contact_; }
+  const ZoneState& state() const { return kept_; }
+  // Throws InputError on a state that does not fit.
+  void restore(ZoneState state);
+
+ private:
+  void weigh_nodes(const ConstraintSet& pins);
+  void place_solids(double time, std::vector<Vec3>& x) const;
+  void refuse_intersections(std::span<const Vec3> start);
+
+  Vec3 gravity_;
+  Index nodes_;
+  std::vector<MeshSolid> solids_;
+  std::vector<double> mass_;
+  std::unique_ptr<ClothContact> contact_;
+  ZoneState kept_;
+  std::vector<Vec3> x0_, x1_;
+  std::vector<double> inverse_mass_;
+  std::vector<std::uint8_t> held_;
+};
+
+}  // namespace taut

@@ -1,0 +1,40 @@
+// Which frames to fetch next and which to let go. Frames are wanted in the order in which they will be played: from the playhead to the newest,
+// then from the start.
+
+export interface FrameRequest {
+  first: number;
+  count: number;
+}
+
+// How many frames later a frame is played.
+export const playedAfter = (frame: number, playhead: number, total: number) => (frame - playhead + total) % total;
+
+// The first run of frames, at most `chunk` long and within the next `window` to be played, that are neither there nor asked for.
+export function nextRequest(has: (frame: number) => boolean, playhead: number, total: number, window: number, chunk: number): FrameRequest | null {
+  const reach = Math.min(window, total);
+  for (let step = 0; step < reach; ++step) {
+    const first = (playhead + step) % total;
+    if (has(first)) continue;
+    let count = 1;
+    while (count < chunk && step + count < reach && first + count < total && !has(first + count)) ++count;
+    return { first, count };
+  }
+  return null;
+}
+
+// Those that will be played last, so that `most` remain.
+export function surplus(frames: Iterable<number>, playhead: number, total: number, most: number): number[] {
+  const order = [...frames].sort((a, b) => playedAfter(a, playhead, total) - playedAfter(b, playhead, total));
+  return order.slice(most);
+}
+
+// Frames of `nodes` nodes, one after the other.
+export function splitFrames(buffer: ArrayBuffer, nodes: number): Float32Array[] {
+  const numbers = 3 * nodes;
+  const all = new Float32Array(buffer);
+  if (numbers === 0 || all.length % numbers !== 0) throw new RangeError(`${all.length} numbers are no whole frames of ${nodes} nodes`);
+  const frames: Float32Array[] = [];
+  // Copied: a view would keep all others in memory with it.
+  for (let at = 0; at < all.length; at += numbers) frames.push(all.slice(at, at + numbers));
+  return frames;
+}

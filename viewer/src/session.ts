@@ -1,0 +1,156 @@
+import * as THREE from 'three';
+import { readRestLengths, readScene, readSprings, readTriangles, readUv, type SceneInfo } from './api';
+import { ClothView } from './cloth_view';
+import { Clock } from './clock';
+import { Colouring, type Mode } from './colouring';
+import { FrameStore } from './frame_store';
+import type { Palette } from './palette';
+import { SolidsView } from './solids_view';
+import type { Stage } from './stage';
+
+// One run, as long as its folder holds it: the geometry, the frames and what is shown of them.
+export class Session {
+  readonly clock: Clock;
+  readonly colouring: Colouring;
+  private readonly store: FrameStore;
+  private readonly cloth: ClothView;
+  private readonly solids: SolidsView;
+  private bounds = new THREE.Box3();
+  private mode: Mode = 'cloth';
+  private shown = -1;
+  private outdated = true;
+  onScale: () => void = () => {};
+  onTrouble: (message: string) => void = () => {};
+
+  static async open(stage: Stage, palette: Palette): Promise<Session> {
+    const scene = await readScene();
+    const [triangles, uv] = await Promise.all([readTriangles(), scene.uv ? readUv() : null]);
+    return new Session(stage, scene, triangles, uv, palette);
+  }
+
+  private constructor(
+    private readonly stage: Stage,
+    readonly scene: SceneInfo,
+    triangles: Uint32Array,
+    uv: Float32Array | null,
+    palette: Palette,
+  ) {
+    this.clock = new Clock(scene.frame_s);
+    this.colouring = new Colouring(scene);
+    this.store = new FrameStore(
+      scene.nodes,
+      () => (this.outdated = true),
+      (message) => this.onTrouble(message),
+    );
+    this.cloth = new ClothView(scene, triangles, uv);
+    this.solids = new SolidsView(scene.solids);
+    stage.scene.add(this.cloth.mesh, this.solids.group);
+    this.setPalette(palette);
+  }
+
+  get frames(): number {
+    return this.store.total;
+  }
+
+  get shownFrame(): number {
+    return this.shown;
+  }
+
+  isThere(frame: number): boolean {
+    return this.store.isSettled(frame);
+  }
+
+  setTotal(total: number) {
+    this.store.setTotal(total);
+    if (this.clock.frame >= total) this.clock.jump(total - 1);
+  }
+
+  setPalette(palette: Palette) {
+    this.cloth.setPalette(palette);
+    this.solids.setColour(palette.solid, palette.ground);
+    this.stage.setPalette(palette);
+  }
+
+  setWireframe(on: boolean) {
+    this.cloth.setWireframe(on);
+    this.stage.invalidate();
+  }
+
+  async setMode(mode: Mode) {
+    this.mode = mode;
+    this.outdated = true;
+    this.solids.setTranslucent(mode === 'contact');
+    if (mode === 'cloth') this.cloth.hideField();
+    if (mode === 'stretch' && !this.colouring.springs && this.scene.springs > 0) {
+      const [ends, restLengths] = await Promise.all([readSprings(), readRestLengths()]);
+      this.colouring.springs = { ends, restLengths };
+      this.outdated = true;
+    }
+  }
+
+  fitScale() {
+    this.colouring.fitScale(this.mode, this.cloth.field);
+    this.outdated = true;
+  }
+
+  // Advances playback and draws what is due. Returns true when another frame is shown than before.
+  tick(seconds: number, more: boolean): boolean {
+    const wanted = this.clock.advance(seconds, this.store.total, more, (frame) => this.isThere(frame));
+    this.store.moveTo(wanted);
+    const moved = wanted !== this.shown;
+    if (!moved && !this.outdated) return false;
+    const positions = this.store.get(wanted);
+    if (!positions) return false;
+    this.outdated = false;
+    const first = this.shown < 0;
+    this.shown = wanted;
+    this.cloth.setPositions(positions);
+    this.solids.setFrame(wanted);
+    this.colour();
+    this.include(positions, first);
+    this.stage.invalidate();
+    return moved;
+  }
+
+  private colour() {
+    if (this.mode === 'cloth') return;
+    const field = this.cloth.field;
+    if (!this.colouring.fill(this.mode, this.shown, (frame) => this.store.get(frame), field)) {
+      this.outdated = true;
+      return;
+    }
+    this.colouring.updateScale(this.mode, field);
+    const { high, reversed } = this.colouring.scale(this.mode);
+    this.cloth.showField(0, high, reversed);
+    this.onScale();
+  }
+
+  // The ground goes below all that has been seen; some room to spare, so that it does not move with every frame.
+  private include(positions: Float32Array, first: boolean) {
+    const box = this.solids.extend(new THREE.Box3().setFromArray(positions), true);
+    if (first) this.stage.frame(this.frameBox(positions), true);
+    if (this.bounds.containsBox(box)) return;
+    this.bounds.union(box);
+    const size = this.bounds.getSize(new THREE.Vector3()).length();
+    if (!first) this.bounds.expandByScalar(0.1 * size);
+    this.solids.setReach(4 * size);
+    this.stage.setBounds(this.bounds, !this.solids.hasPlane);
+  }
+
+  private frameBox(positions: Float32Array): THREE.Box3 {
+    return this.solids.extend(new THREE.Box3().setFromArray(positions), false);
+  }
+
+  frameAll(fromFront = false) {
+    const positions = this.store.get(this.shown);
+    if (positions) this.stage.frame(this.frameBox(positions), fromFront);
+  }
+
+  close() {
+    this.store.close();
+    this.stage.scene.remove(this.cloth.mesh, this.solids.group);
+    this.cloth.dispose();
+    this.solids.dispose();
+    this.stage.invalidate();
+  }
+}
