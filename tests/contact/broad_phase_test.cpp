@@ -112,7 +112,10 @@ TEST(BroadPhase, OnlyPairsWithAMovedVertex) {
 
 TEST(BroadPhase, BoxesAreRoundedOutwards) {
   // Gaps of exactly the margin, at places that are no floats.
-  for (const double place : {0.1, -0.3, 1000.1, -12345.678, 1e-20, 1e9 + 0.1}) {
+  std::mt19937 random(7);
+  std::vector<double> places{0.1, -0.3, 1000.1, -12345.678, 1e-20, 1e9 + 0.1};
+  for (int k = 0; k < 500; ++k) places.push_back(test::anywhere(random, 10.0)[0]);
+  for (const double place : places) {
     Soup soup;
     soup.x0 = {Vec3(place, 0, 0), Vec3(place, 1, 0), Vec3(place, 0, 1), Vec3(place, 0, 0), Vec3(place, 1, 0), Vec3(place, 0, 1)};
     soup.x1 = soup.x0;

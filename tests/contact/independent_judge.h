@@ -1,6 +1,6 @@
 #pragma once
 // Whether a surface intersects itself, judged by CGAL's exact predicates: nothing from src/taut/contact has a say. Built where CGAL is
-// installed (tests/judge); a test asks judge_available() and skips where it is not.
+// installed (tests/contact/judge); a test asks judge_available() and skips where it is not.
 
 #include <array>
 #include <cstdint>
