@@ -53,7 +53,32 @@ velocity = [0, 2, 0.25]
 shape = "box"
 size = [1, 2, 0.5]
 translation = [0, 0, -1]
+[[solid]]
+name = "wedge"
+shape = "mesh"
+mesh = "wedge.obj"
+motion = "wedge.f32"
+motion_rate = 50
+translation = [5, 0, 0]
 """
+
+WEDGE = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n"
+
+
+def wedge_samples():
+    """What wedge.f32 holds: 4 samples of 4 vertices, each moved somewhere else."""
+    rest = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    return np.array([rest + 0.25 * k * np.array([[0, 0, 0], [1, 0, 0], [0, -0.5, 0], [0, 0.5, 1]]) for k in range(4)], np.float32)
+
+
+def check_wedge(points, frame):
+    """Linear between samples, the last one held."""
+    samples = wedge_samples().astype(float)
+    place = min(frame * FRAME_INTERVAL * 50, 3)
+    before = min(int(place), 2)
+    expected = samples[before] + (place - before) * (samples[before + 1] - samples[before]) + [5, 0, 0]
+    near(points, expected, 1e-6, f"wedge, frame {frame}")
+
 
 TRIANGLE = """ply
 format ascii 1.0
@@ -84,6 +109,8 @@ class Run:
         self.taut, self.folder = taut, Path(folder)
         (self.folder / "scene.toml").write_text(SCENE)
         (self.folder / "triangle.ply").write_text(TRIANGLE)
+        (self.folder / "wedge.obj").write_text(WEDGE)
+        wedge_samples().tofile(self.folder / "wedge.f32")
         self.call("run", "scene.toml", "--out", "result", "--quiet", "--no-picture")
         frames = self.folder / "result/frames"
         self.x = np.array([np.load(frames / f"{k:06}.npy") for k in range(13)])
@@ -156,7 +183,7 @@ def check_usd(run):
     assert abs(stage.GetTimeCodesPerSecond() * FRAME_INTERVAL - 1) < 1e-12
     assert stage.GetRootLayer().documentation == 'To be "read" back'
     meshes = {p.GetName(): UsdGeom.Mesh(p) for p in stage.GetDefaultPrim().GetChildren()}
-    assert list(meshes) == ["sheet_one", "triangle", "ball", "solid_1"], list(meshes)
+    assert list(meshes) == ["sheet_one", "triangle", "ball", "solid_1", "wedge"], list(meshes)
     for number, name in enumerate(["sheet_one", "triangle"]):
         points, triangles, uv = run.cloth(number)
         mesh = meshes[name]
@@ -173,6 +200,7 @@ def check_usd(run):
             same(mesh.GetExtentAttr().Get(frame), [points[frame].min(axis=0), points[frame].max(axis=0)], "extent")
     for frame in TIMES:
         check_ball(meshes["ball"].GetPointsAttr().Get(frame), frame)
+        check_wedge(meshes["wedge"].GetPointsAttr().Get(frame), frame)
     assert meshes["solid_1"].GetPointsAttr().GetNumTimeSamples() == 0
     check_box(meshes["solid_1"].GetPointsAttr().Get())
 
@@ -190,7 +218,7 @@ def check_mesh_files(run, kind):
     import trimesh
     out = run.export(kind)
     names = sorted(p.name for p in out.iterdir())
-    assert len(names) == 3 * 13 + 1 and f"solid_1.{kind}" in names, names
+    assert len(names) == 4 * 13 + 1 and f"solid_1.{kind}" in names, names
     for number, name in enumerate(["sheet_one", "triangle"]):
         points, triangles, uv = run.cloth(number)
         for frame in TIMES:
@@ -205,6 +233,7 @@ def check_mesh_files(run, kind):
             same(read_uv.astype(np.float32), uv, "texture coordinates")
     for frame in TIMES:
         check_ball(meshio.read(out / f"ball_{frame:06}.{kind}").points, frame)
+        check_wedge(meshio.read(out / f"wedge_{frame:06}.{kind}").points, frame)
     check_box(meshio.read(out / f"solid_1.{kind}").points)
 
 
@@ -222,7 +251,7 @@ def check_vtk(run):
     from vtkmodules.util.numpy_support import vtk_to_numpy
     out = run.export("vtk")
     entries = xml.parse(out / "sequence.pvd").getroot().findall("Collection/DataSet")
-    assert len(entries) == 4 * 13
+    assert len(entries) == 5 * 13
     for number, name in enumerate(["sheet_one", "triangle"]):
         points, triangles, uv = run.cloth(number)
         own = [e for e in entries if e.get("part") == str(number)]
@@ -300,7 +329,7 @@ def check_gltf(run):
         assert issues["numErrors"] == 0 and issues["numWarnings"] == 0, json.dumps(issues, indent=1)
         assert report["info"]["hasMorphTargets"] and report["info"]["animationCount"] == 1
     gltf, accessor = read_glb(file)
-    assert [node["name"] for node in gltf["nodes"]] == ["sheet_one", "triangle", "ball", "solid_1"]
+    assert [node["name"] for node in gltf["nodes"]] == ["sheet_one", "triangle", "ball", "solid_1", "wedge"]
     animation = gltf["animations"][0]
     times = accessor(animation["samplers"][0]["input"])[:, 0]
     near(times, np.arange(13) * FRAME_INTERVAL, 1e-7, "times")
@@ -353,14 +382,15 @@ def check_cache(run, kind):
     import meshio
     out = run.export(kind)
     assert sorted(p.name for p in out.iterdir()) == sorted(
-        [f"{n}.{e}" for n in ("sheet_one", "triangle", "ball") for e in ("obj", kind)] + ["solid_1.obj"])
+        [f"{n}.{e}" for n in ("sheet_one", "triangle", "ball", "wedge") for e in ("obj", kind)] + ["solid_1.obj"])
     for number, name in enumerate(["sheet_one", "triangle"]):
         cache = {"pc2": read_pc2, "mdd": read_mdd}[kind](out / f"{name}.{kind}")
         same(cache.astype(np.float32), run.cloth(number)[0], name)
         same(meshio.read(out / f"{name}.obj").points.astype(np.float32), cache[0].astype(np.float32), "the mesh is the first sample")
-    cache = {"pc2": read_pc2, "mdd": read_mdd}[kind](out / f"ball.{kind}")
+    ball, wedge = ({"pc2": read_pc2, "mdd": read_mdd}[kind](out / f"{name}.{kind}") for name in ("ball", "wedge"))
     for frame in TIMES:
-        check_ball(cache[frame], frame)
+        check_ball(ball[frame], frame)
+        check_wedge(wedge[frame], frame)
 
 
 def main():
