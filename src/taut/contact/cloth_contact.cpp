@@ -50,6 +50,7 @@ struct ClothContact::Work {
     std::ranges::fill(awake, std::uint8_t{0});
   }
   void forget_moved() { std::ranges::fill(moved, std::uint8_t{0}); }
+  bool few_moved() const { return 4 * std::ranges::count_if(moved, std::identity{}) < std::ssize(moved); }
   bool none_moved() const { return std::ranges::none_of(moved, std::identity{}); }
 };
 
@@ -106,27 +107,47 @@ void ClothContact::repel(Work& work) {
   for (const NearPair& pair : near) {
     work.rows.push_back(repulsion_row(pair, thickness_of(pair.pair), friction_of(pair.pair)));
   }
-  if (work.step.solids)
-    for (const auto& [node, obstacle] : work.step.solids->touched(work.x1))
-      if (!work.step.held[node]) work.rows.push_back(obstacle_row(node, obstacle, work.step.x0[node]));
+  if (work.step.solids) add_touched(work);
   for (ContactRow& row : work.rows) weigh(row, work.step.inverse_mass);
   counts_.near_ms += timer.lap();
   work.meet_rows(repulsion_iterations, tolerance_share * options_.thickness);
   counts_.impulse_ms += timer.lap();
 }
 
-// Collisions of the pairs with a node in `moved` (all, where it is empty), and those nodes' obstacles.
+// Nodes that touch analytic solids. Where the solve has put them they are well placed, even if a little inside (solid_contact.h): pushes
+// must not take them further in.
+void ClothContact::add_touched(Work& work) const {
+  for (const auto& [node, obstacle] : work.step.solids->touched(work.x1)) {
+    if (work.step.held[node]) continue;
+    ContactRow& row = work.rows.emplace_back(obstacle_row(node, obstacle, work.step.x0[node]));
+    row.target = std::min(row.target, row.normal.dot(work.x1[node]));
+  }
+}
+
+// Collisions of the pairs with a node in `moved` (all, where it is empty), and those nodes' obstacles. On the same way as the search of
+// near pairs, but for the nodes in `moved`: of all.
 void ClothContact::find_trouble(Work& work, std::span<const std::uint8_t> moved, bool same_way) {
   const auto skip = [&](const CollisionPair& pair) { return ignored(pair) || work.zones.together(pair.node); };
-  work.trouble.pairs = same_way ? search_.colliding_on_the_same_way(work.step.x0, work.x1, separation_, skip)
-                                : search_.colliding(work.step.x0, work.x1, separation_, moved, skip);
+  const std::span<const std::uint8_t> blocked_among = same_way ? std::span<const std::uint8_t>() : moved;
+  work.trouble.pairs.clear();
+  if (same_way) {
+    const auto skip_moved = [&](const CollisionPair& pair) {
+      return skip(pair) || std::ranges::any_of(pair.node, [&](Index node) { return moved[node] != 0; });
+    };
+    work.trouble.pairs = search_.colliding_on_the_same_way(work.step.x0, work.x1, separation_, skip_moved);
+    if (work.none_moved()) moved = {};
+  }
+  if (!same_way || !moved.empty()) {
+    const std::vector<CollidingPair> others = search_.colliding(work.step.x0, work.x1, separation_, moved, skip);
+    work.trouble.pairs.insert(work.trouble.pairs.end(), others.begin(), others.end());
+  }
   work.trouble.obstacles.clear();
   if (!work.step.solids || work.step.solids->solids().empty()) return;
   const Index nodes = work.step.solids->nodes();
   std::vector<std::uint8_t> blocked(static_cast<std::size_t>(nodes), 0);
   parallel_for(nodes, node_grain, [&](Index begin, Index end) {
     for (Index i = begin; i < end; ++i)
-      blocked[i] = !work.step.held[i] && (moved.empty() || moved[i]) && work.step.solids->obstacle(i, work.x1[i]);
+      blocked[i] = !work.step.held[i] && (blocked_among.empty() || blocked_among[i]) && work.step.solids->obstacle(i, work.x1[i]);
   });
   for (Index i = 0; i < nodes; ++i) {
     if (!blocked[i]) continue;
@@ -138,8 +159,9 @@ void ClothContact::find_trouble(Work& work, std::span<const std::uint8_t> moved,
 // True when nothing was found.
 bool ClothContact::sweep(Work& work, int round) {
   Timer timer;
-  const bool first = round == 0;
-  find_trouble(work, first ? std::span<const std::uint8_t>() : work.moved, first && work.none_moved());
+  // At first everything has to be searched: where few nodes were moved, most pairs are still those of the near ones' search.
+  const bool first = round == 0, same_way = first && work.few_moved();
+  find_trouble(work, first && !same_way ? std::span<const std::uint8_t>() : work.moved, same_way);
   counts_.detect_ms += timer.lap();
   work.forget_moved();
   if (work.trouble.none()) return true;

@@ -91,6 +91,7 @@ class ClothContact {
   double friction_of(const CollisionPair& pair) const;
   const CollisionBody* solid_of(const CollisionPair& pair) const;
   void repel(Work& work);
+  void add_touched(Work& work) const;
   bool sweep(Work& work, int round);
   void find_trouble(Work& work, std::span<const std::uint8_t> moved, bool same_way);
   Status hold(Work& work);
