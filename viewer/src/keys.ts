@@ -5,7 +5,8 @@ export function bindKeys(actions: KeyActions) {
   document.addEventListener('keydown', (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     const target = event.target as HTMLElement;
-    if (target.closest('dialog') && event.key !== '?') return;
+    // A dialog that has just closed may still have the focus.
+    if (target.closest('dialog')?.open && event.key !== '?') return;
     if (target instanceof HTMLSelectElement || target instanceof HTMLTextAreaElement) return;
     if (target instanceof HTMLButtonElement && (event.key === ' ' || event.key === 'Enter')) return;
     if (target instanceof HTMLInputElement && /^(Arrow|Home|End|Page)/.test(event.key) && !event.shiftKey) return;

@@ -140,6 +140,16 @@ export async function openPage(browser, address, options = {}) {
   return page;
 }
 
+// The stage's picture as soon as `holds` says that it is what is waited for; after five seconds whatever it shows then. A busy machine draws late.
+export async function pictureThat(page, holds, file) {
+  const deadline = Date.now() + 5000;
+  for (;;) {
+    const picture = await stagePicture(page, file);
+    if (holds(picture) || Date.now() > deadline) return picture;
+    await page.waitForTimeout(100);
+  }
+}
+
 export const shownFrame = (page) => page.evaluate(() => Number(document.querySelector('#stage').dataset.frame ?? -1));
 export const waitForFrame = (page, least, most = 1e9) =>
   page.waitForFunction(
