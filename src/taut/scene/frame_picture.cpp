@@ -17,6 +17,15 @@ constexpr int most_frames_looked_at = 24;
 // Of these colours solids take one after the other.
 const Colour solid_colours[] = {Colour(0.80, 0.78, 0.74), Colour(0.62, 0.68, 0.62), Colour(0.74, 0.63, 0.60), Colour(0.62, 0.64, 0.72)};
 
+// Cloths likewise, front and back; as in the viewer.
+struct ClothColours {
+  Colour front, back;
+};
+const ClothColours cloth_colours[] = {{Colour(0.22, 0.47, 0.74), Colour(0.93, 0.64, 0.27)},
+                                      {Colour(0.71, 0.33, 0.24), Colour(0.44, 0.68, 0.62)},
+                                      {Colour(0.36, 0.55, 0.24), Colour(0.72, 0.50, 0.71)},
+                                      {Colour(0.48, 0.38, 0.70), Colour(0.79, 0.71, 0.35)}};
+
 bool is_level_plane(const SolidShapes& solids, std::size_t k) {
   const Solid& solid = solids.solid(k);
   return solid.shape == SolidShape::plane && !solids.moves(k) && (solid.pose(0.0).rotation * Vec3::UnitZ()).z() > 1.0 - 1e-9;
@@ -57,9 +66,12 @@ Vec2 pattern_cells(const ClothModel& cloth, const ClothPart& part) {
   return {std::round(cells), std::round(cells)};
 }
 
-Surface cloth_surface(const ClothModel& cloth, const ClothPart& part, std::span<const Vec3> x, Pattern pattern) {
+Surface cloth_surface(const ClothModel& cloth, std::size_t k, std::span<const Vec3> x, Pattern pattern) {
+  const ClothPart& part = cloth.parts()[k];
   Surface surface;
   surface.name = part.name;
+  surface.front = cloth_colours[k % std::size(cloth_colours)].front;
+  surface.back = cloth_colours[k % std::size(cloth_colours)].back;
   surface.positions = x;
   surface.triangles = std::span(cloth.surface().triangles).subspan(part.first_triangle, part.triangle_count);
   surface.texcoords = cloth.surface().texcoords;
@@ -78,7 +90,7 @@ Image draw_scene(const ClothModel& cloth, std::span<const Vec3> x, const SolidSh
     if (static_cast<Index>(k) != without_solid) meshes.push_back(solids.at(k, time));
   std::vector<Surface> surfaces;
   for (std::size_t k = 0; k < meshes.size(); ++k) surfaces.push_back(solid_surface(meshes[k], solid_colours[k % std::size(solid_colours)]));
-  for (const ClothPart& part : cloth.parts()) surfaces.push_back(cloth_surface(cloth, part, x, pattern));
+  for (std::size_t k = 0; k < cloth.parts().size(); ++k) surfaces.push_back(cloth_surface(cloth, k, x, pattern));
   return render(surfaces, camera, options);
 }
 
