@@ -131,6 +131,29 @@ TEST(View, PosesOfAMovingSolidFollowItsFrames) {
   for (int f = 0; f <= 6; ++f) EXPECT_NEAR(poses.at(static_cast<std::size_t>(f)).at(1).get<double>(), 2 * 0.015 * f, 1e-7);
 }
 
+// A tetrahedron that flies by: its corners at each frame, those that no triangle uses left out.
+TEST(View, SolidsThatAreMeshesAreServedFrameByFrame) {
+  const WorkFolder folder;
+  folder.file("tetra.obj", "v 3 0 0\nv 4 0 0\nv 3 1 0\nv 3 0 1\nv 9 9 9\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+  folder.file("small.toml",
+              std::string(small_scene()) + "[[solid]]\nname = \"flier\"\nshape = \"mesh\"\nmesh = \"tetra.obj\"\nvelocity = [0, 2, 0]\n");
+  const ProgramEnd run = taut(folder, {"run", "small.toml", "--out", "r", "--quiet", "--no-picture"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const Viewer viewer(folder, "r");
+  EXPECT_EQ(viewer.json("api/scene").at("solids").at(1).at("shape"), "mesh");
+  EXPECT_EQ(numbers<std::int32_t>(viewer.get("api/solid_triangles?solid=1").body),
+            (std::vector<std::int32_t>{0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3}));
+  const std::vector<float> points = numbers<float>(viewer.get("api/solid_points?solid=1").body);
+  ASSERT_EQ(points.size(), 7u * 4 * 3);
+  const double corners[4][3] = {{3, 0, 0}, {4, 0, 0}, {3, 1, 0}, {3, 0, 1}};
+  for (std::size_t f = 0; f < 7; ++f)
+    for (std::size_t v = 0; v < 4; ++v)
+      for (std::size_t i = 0; i < 3; ++i)
+        EXPECT_NEAR(points[(f * 4 + v) * 3 + i], corners[v][i] + (i == 1 ? 2 * 0.015 * static_cast<double>(f) : 0.0), 1e-6) << f;
+  EXPECT_EQ(viewer.get("api/solid_points?solid=0").status, 404);  // a sphere
+  EXPECT_EQ(viewer.get("api/solid_points?solid=../1").status, 400);
+}
+
 TEST(View, SendsStatsFromAnyByteInWholeRows) {
   const WorkFolder folder;
   run_small(folder, "r");

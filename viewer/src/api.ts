@@ -24,7 +24,7 @@ export type Pose = [number, number, number, number, number, number, number];
 
 export interface SolidInfo {
   name: string;
-  shape: 'sphere' | 'plane' | 'cylinder' | 'box' | 'unknown';
+  shape: 'sphere' | 'plane' | 'cylinder' | 'box' | 'mesh' | 'unknown';
   radius: number;
   height: number;
   size: [number, number, number];
@@ -63,6 +63,8 @@ export const readTriangles = async () => new Uint32Array(await bytes('triangles'
 export const readUv = async () => new Float32Array(await bytes('uv'));
 export const readSprings = async () => new Uint32Array(await bytes('springs'));
 export const readRestLengths = async () => new Float32Array(await bytes('rest_lengths'));
+export const readSolidTriangles = async (solid: number) => new Uint32Array(await bytes(`solid_triangles?solid=${solid}`));
+export const readSolidPoints = async (solid: number) => new Float32Array(await bytes(`solid_points?solid=${solid}`));
 export const readFrames = (first: number, count: number) => bytes(`frames?first=${first}&count=${count}`);
 
 // The rows from a byte on, and which file they are of.

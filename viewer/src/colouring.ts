@@ -34,7 +34,7 @@ export class Colouring {
 
   available(mode: Mode): string | null {
     if (mode === 'stretch' && this.scene.springs === 0) return 'This result does not say where its springs are';
-    if (mode === 'contact' && !this.scene.solids.some((solid) => solid.shape !== 'unknown')) return 'There is no solid whose distance is known';
+    if (mode === 'contact' && !this.scene.solids.some((solid) => solid.shape !== 'unknown' && solid.shape !== 'mesh')) return 'There is no solid whose distance is known';
     return null;
   }
 

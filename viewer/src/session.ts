@@ -46,6 +46,10 @@ export class Session {
     this.solids = new SolidsView(scene.solids);
     stage.scene.add(this.cloth.mesh, this.solids.group);
     this.setPalette(palette);
+    this.solids.loadMeshes(scene.solids).then(
+      () => (this.outdated = true),
+      (error) => this.onTrouble(`Solids that are meshes are not drawn: ${error.message}`),
+    );
   }
 
   get frames(): number {

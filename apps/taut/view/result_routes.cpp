@@ -25,6 +25,11 @@ std::int64_t number(const Parameters& parameters, const std::string& key, std::i
   return value;
 }
 
+// Of a solid that is a mesh: the parameter is its number.
+std::string solid_file(const Parameters& parameters, const char* what) {
+  return "solid_" + std::to_string(number(parameters, "solid", 999'999)) + "_" + what + ".npy";
+}
+
 Answer array_answer(const ArrayFile& array) {
   return {array.bytes(),
           binary,
@@ -68,6 +73,8 @@ Answer ResultRoutes::answer(const std::string& name, const Parameters& parameter
   if (name == "uv") return array("uv.npy", "<f4", 2);
   if (name == "springs") return array("stretch_springs.npy", "<i4", 2);
   if (name == "rest_lengths") return array("rest_lengths.npy", "<f4", 1);
+  if (name == "solid_triangles") return array(solid_file(parameters, "triangles"), "<i4", 3);
+  if (name == "solid_points") return array(solid_file(parameters, "points"), "<f4", 3);
   if (name == "frames") return frames(parameters);
   if (name == "stats") return stats(parameters);
   throw Refusal{404, "there is nothing of this name"};

@@ -21,8 +21,8 @@ const char* name_of(SolidShape shape) {
       return "cylinder";
     case SolidShape::box:
       return "box";
-    case SolidShape::mesh:  // its shape is in files outside the results folder
-      break;
+    case SolidShape::mesh:
+      return "mesh";
   }
   return "unknown";
 }

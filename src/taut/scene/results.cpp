@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
 
@@ -11,6 +12,7 @@
 #include "taut/io/npy.h"
 #include "taut/scene/checkpoint.h"
 #include "taut/scene/scene_file.h"
+#include "taut/scene/solid_shapes.h"
 
 namespace taut {
 
@@ -19,7 +21,8 @@ namespace fs = std::filesystem;
 namespace {
 
 // What a run may leave in its folder; anything else there belongs to somebody.
-constexpr const char* own_names[] = {"scene.toml", "frames", "stats.csv", "summary.json", "checkpoint", "contact_sheet.png", "stats.svg", "last_good"};
+constexpr const char* own_names[] = {"scene.toml",        "frames",    "stats.csv", "summary.json", "checkpoint",
+                                     "contact_sheet.png", "stats.svg", "last_good"};
 
 void refuse_foreign_folder(const fs::path& folder) {
   if (!fs::exists(folder)) return;
@@ -52,6 +55,32 @@ void write_stretch_springs(const ClothModel& cloth, const fs::path& folder) {
   write_npy<float>(folder / "rest_lengths.npy", lengths, std::array{count});
 }
 
+// Of each solid that is a mesh: its triangles, and where its vertices are at each frame, or once if it never moves.
+void write_mesh_solids(const Scene& scene, const fs::path& folder) {
+  const auto is_mesh = [](const Solid& solid) { return solid.shape == SolidShape::mesh; };
+  if (std::ranges::none_of(scene.solids, is_mesh)) return;
+  const SolidShapes shapes(scene);
+  for (std::size_t k = 0; k < shapes.size(); ++k) {
+    if (!is_mesh(shapes.solid(k))) continue;
+    std::vector<std::int32_t> triangles;
+    std::vector<float> points;
+    std::int32_t vertices = 0;  // those that triangles use: readers take their number from the triangles
+    const int frames = shapes.moves(k) ? scene.time.frames + 1 : 1;
+    for (int frame = 0; frame < frames; ++frame) {
+      const TriangleMesh mesh = shapes.at(k, frame * scene.time.steps_per_frame * scene.time.step).mesh;
+      if (frame == 0)
+        for (const Triangle& t : mesh.triangles)
+          for (const Index vertex : t) triangles.push_back(vertex), vertices = std::max(vertices, vertex + 1);
+      for (const Vec3& x : std::span(mesh.positions).first(static_cast<std::size_t>(vertices)))
+        for (const double value : x) points.push_back(static_cast<float>(value));
+    }
+    write_npy<std::int32_t>(folder / fmt::format("solid_{}_triangles.npy", k), triangles,
+                            std::array{static_cast<std::int64_t>(triangles.size() / 3), std::int64_t{3}});
+    write_npy<float>(folder / fmt::format("solid_{}_points.npy", k), points,
+                     std::array{static_cast<std::int64_t>(points.size() / 3), std::int64_t{3}});
+  }
+}
+
 }  // namespace
 
 fs::path ResultsFolder::frame_file(int frame) const { return folder_ / "frames" / fmt::format("{:06}.npy", frame); }
@@ -71,6 +100,7 @@ void ResultsFolder::start(const Simulation& simulation) const {
   write_npy<std::int32_t>(folder_ / "frames" / "triangles.npy", triangles, triangle_shape);
   write_npy<float>(folder_ / "frames" / "uv.npy", uv, uv_shape);
   write_stretch_springs(simulation.cloth(), folder_ / "frames");
+  write_mesh_solids(simulation.scene(), folder_ / "frames");
   write_file(folder_ / "frames" / "cloths.json", cloths_json(simulation.cloth()));
 }
 
@@ -155,9 +185,9 @@ void StatsWriter::write(const StepRecord& r, int frame) {
       ":.3e},{},{},{},{},{},{},{},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f}\n",
       r.step, r.time, frame, r.nodes, r.dof, r.constraints, r.contacts, r.solver, optional(r.core_springs, Index{0}), r.iterations,
       r.relative_residual, r.assemble_ms, r.order_ms, r.factor_ms, r.solve_ms, r.contact_ms, r.step_ms, r.kinetic_J, r.elastic_J,
-      r.max_stretch, optional(r.intersections, -1), optional(r.bound_iterations, -1), r.precision, r.fallbacks, r.collapsed_springs, r.retries, r.zone_nodes, r.contact_passes,
-      r.contact_moved, r.deepest_m, r.newton_iterations, r.pairs_tested, r.near_pairs, r.pushing_pairs, r.impacts, r.zones, r.largest_zone, r.near_ms,
-      r.impulse_ms, r.detect_ms, r.zone_ms, r.check_ms);
+      r.max_stretch, optional(r.intersections, -1), optional(r.bound_iterations, -1), r.precision, r.fallbacks, r.collapsed_springs,
+      r.retries, r.zone_nodes, r.contact_passes, r.contact_moved, r.deepest_m, r.newton_iterations, r.pairs_tested, r.near_pairs,
+      r.pushing_pairs, r.impacts, r.zones, r.largest_zone, r.near_ms, r.impulse_ms, r.detect_ms, r.zone_ms, r.check_ms);
   // One write a row: a reader, or a crash, never sees half of one.
   if (std::fwrite(row.data(), 1, row.size(), file_) != row.size() || std::fflush(file_) != 0)
     throw InputError({path_.string()}, "cannot be written; is the disk full? The steps up to here are safe: `taut resume` goes on");

@@ -4,6 +4,8 @@
 //   scene.toml          what ran, all defaults filled in
 //   frames/NNNNNN.npy   node positions, float32 (nodes, 3), m; 000000 is the start
 //   frames/triangles.npy int32 (triangles, 3), frames/uv.npy float32 (nodes, 2), frames/cloths.json: which nodes belong to which cloth
+//   frames/solid_K_triangles.npy int32 (triangles, 3), frames/solid_K_points.npy float32 (samples x vertices, 3), m: solids that are meshes,
+//       K counted from 0; one sample a frame, or a single one if the solid never moves
 //   frames/stretch_springs.npy int32 (springs, 2), the nodes at the ends; frames/rest_lengths.npy float32 (springs), m: the stretch is L/L0 - 1
 //   stats.csv           one row a step
 //   summary.json        how the run ended, with totals, machine and instruction set
