@@ -30,12 +30,12 @@ std::string state_line(const ResultFiles& files) {
 int view(const ViewArguments& arguments) {
   const ResultFiles files(arguments.folder);
   ViewServer server(files, read_page(page_folder()), arguments.port);
+  const auto& interrupted = interrupt_flag();
   fmt::print("{}: {}\n\n  {}\n\nCtrl-C ends it.\n", arguments.folder, state_line(files), server.address());
   std::fflush(stdout);
   if (!arguments.no_open && !open_browser(server.address()))
     fmt::print(stderr, "found no browser to open; open the address above in yours\n");
   std::thread serving([&] { server.run(); });
-  const auto& interrupted = interrupt_flag();
   while (!interrupted) std::this_thread::sleep_for(std::chrono::milliseconds(100));
   server.stop();
   serving.join();

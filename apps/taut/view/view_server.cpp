@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 #include <httplib.h>
 
+#include <chrono>
 #include <random>
+#include <thread>
 
 #include "taut/base/error.h"
 #include "view/result_routes.h"
@@ -132,6 +134,10 @@ ViewServer::ViewServer(ResultFiles files, PageFiles page, int port) : parts_(std
 ViewServer::~ViewServer() = default;
 std::string ViewServer::address() const { return fmt::format("http://127.0.0.1:{}/{}/", parts_->port, parts_->key); }
 void ViewServer::run() { parts_->server.listen_after_bind(); }
-void ViewServer::stop() { parts_->server.stop(); }
+void ViewServer::stop() {
+  // A server that does not listen yet would not hear it.
+  for (int tries = 0; tries < 1000 && !parts_->server.is_running(); ++tries) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  parts_->server.stop();
+}
 
 }  // namespace taut::app
