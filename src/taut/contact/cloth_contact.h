@@ -1,6 +1,6 @@
 #pragma once
 // What keeps cloth from passing through itself, other cloths and solids' meshes: corrects the positions at the end of a step so that no
-// pair of the surface meets on the way, or says that it cannot (docs/mathematics.md, 6; Bridson, Fedkiw & Anderson 2002; paper Section 7).
+// pair of the surface meets on the way, or says that it cannot (docs/mathematics.md, 7; Bridson, Fedkiw & Anderson 2002; paper Section 7).
 //
 //   x0            m, positions at the start, without intersections
 //   x1            m, where the dynamics would end; changed in place

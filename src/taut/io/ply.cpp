@@ -94,7 +94,9 @@ class PlyReader {
   double finite_number(const PlyProperty& property, Index vertex) {
     const double value = data_->number(property.type);
     if (!std::isfinite(value))
-      fail(fmt::format("vertex {}", vertex), fmt::format(": {} is {}, a finite number was expected", property.name, value));
+      fail(fmt::format("vertex {}", vertex),
+           fmt::format(": {} is {}, a finite number was expected; mend this vertex in the program that wrote the file", property.name,
+                       value));
     return value;
   }
 

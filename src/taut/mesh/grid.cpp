@@ -2,6 +2,8 @@
 
 #include <cassert>
 
+#include "taut/mesh/split_quad.h"
+
 namespace taut {
 
 TriangleMesh make_grid(const GridShape& shape) {
@@ -17,13 +19,7 @@ TriangleMesh make_grid(const GridShape& shape) {
   for (Index j = 0; j + 1 < shape.nv; ++j)
     for (Index i = 0; i + 1 < shape.nu; ++i) {
       const Index a = shape.node(i, j), b = shape.node(i + 1, j), c = shape.node(i + 1, j + 1), d = shape.node(i, j + 1);
-      if ((i + j) % 2 == 0) {
-        mesh.triangles.push_back({a, b, c});
-        mesh.triangles.push_back({a, c, d});
-      } else {
-        mesh.triangles.push_back({a, b, d});
-        mesh.triangles.push_back({b, c, d});
-      }
+      add_split_quad({a, b, c, d}, (i + j) % 2 == 0, mesh.triangles);
     }
   return mesh;
 }

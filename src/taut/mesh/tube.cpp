@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "taut/mesh/split_quad.h"
+
 namespace taut {
 
 TriangleMesh make_tube(const TubeShape& shape) {
@@ -18,13 +20,7 @@ TriangleMesh make_tube(const TubeShape& shape) {
   for (Index j = 0; j + 1 < shape.along; ++j)
     for (Index i = 0; i < shape.around; ++i) {
       const Index a = node(i, j), b = node(i + 1, j), c = node(i + 1, j + 1), d = node(i, j + 1);
-      if ((i + j) % 2 == 0) {
-        mesh.triangles.push_back({a, b, c});
-        mesh.triangles.push_back({a, c, d});
-      } else {
-        mesh.triangles.push_back({a, b, d});
-        mesh.triangles.push_back({b, c, d});
-      }
+      add_split_quad({a, b, c, d}, (i + j) % 2 == 0, mesh.triangles);
     }
   return mesh;
 }
