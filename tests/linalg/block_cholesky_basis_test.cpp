@@ -120,5 +120,21 @@ TEST_P(BlockFactorBasis, WithoutBasisAndMask) {
   EXPECT_LT(relative_difference(x, dense(a).llt().solve(as_eigen(b))), tolerance());
 }
 
+TEST_P(BlockFactorBasis, TwoLoadsOnTheWayAreTheTwoSolvesAfterwards) {
+  Random random(3);
+  const BasisCase c = random_case(random, 90);
+  ASSERT_TRUE(cholesky_.analyze(c.a.pattern, c.mask).ok());
+  const std::vector<double> b = random.vector(c.a.dofs());
+  std::vector<double> r = random.vector(c.a.dofs()), on_the_way(r.size()), afterwards(r.size());
+  for (double& value : r) value *= 1e-25;
+  double b_norm2 = -1.0, r_norm2 = -1.0;
+  ASSERT_TRUE(cholesky_.factorize(c.a, c.basis.view(), b, b_norm2, r, r_norm2).ok());
+  cholesky_.solve_backward(0.0, on_the_way);
+  EXPECT_EQ(cholesky_.solve_forward(b), b_norm2);
+  EXPECT_EQ(cholesky_.solve_forward(r), r_norm2);
+  cholesky_.solve_backward(0.0, afterwards);
+  EXPECT_EQ(on_the_way, afterwards);
+}
+
 }  // namespace
 }  // namespace taut::test

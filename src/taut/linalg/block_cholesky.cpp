@@ -1,6 +1,7 @@
 #include "taut/linalg/block_cholesky.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 
@@ -52,10 +53,12 @@ struct BlockCholesky::Implementation {
   }
 
   // Single precision sees vectors whose largest entry is about 1: what is left of a residual may be far below its range.
-  FactorVectors scaled(std::span<const double> b) {
-    scale = 1.0;
+  double scale_for(std::span<const double> b) const {
     const double largest = single ? largest_magnitude(b) : 0.0;
-    if (largest > 0.0 && std::isfinite(largest)) scale = std::ldexp(1.0, -std::clamp(std::ilogb(largest), -1000, 1000));
+    return largest > 0.0 && std::isfinite(largest) ? std::ldexp(1.0, -std::clamp(std::ilogb(largest), -1000, 1000)) : 1.0;
+  }
+  FactorVectors scaled(std::span<const double> b) {
+    scale = scale_for(b);
     return {start, scale};
   }
 
@@ -63,23 +66,42 @@ struct BlockCholesky::Implementation {
     return with_factor([&](auto& factor) { return factor.forward_norm2(); }) / (scale * scale);
   }
 
-  Status factorize_in(bool in_single, const FactorSource& source, std::span<const double> b, double* b_norm2) {
+  // A right-hand side that is solved on the way, and where bᵀ A⁻¹ b goes.
+  struct Load {
+    std::span<const double> b;
+    double* norm2;
+  };
+
+  Status factorize_in(bool in_single, const FactorSource& source, std::span<const Load> loads) {
     make_factor(in_single);
-    const FactorVectors vectors = scaled(b);
-    const Status status = with_factor([&](auto& factor) { return factor.factorize(source, vectors, b.empty() ? nullptr : b.data()); });
-    if (b_norm2 && status.ok()) *b_norm2 = forward_norm2();
+    std::array<FactorLoad, 2> list;
+    for (std::size_t k = 0; k < loads.size(); ++k) list[k] = {loads[k].b.data(), scale_for(loads[k].b)};
+    const Status status = with_factor([&](auto& factor) { return factor.factorize(source, start, std::span(list).first(loads.size())); });
+    if (loads.empty() || !status.ok()) return status;
+    scale = list[loads.size() - 1].scale;
+    if (loads.back().norm2) *loads.back().norm2 = forward_norm2();
+    if (loads.size() > 1)
+      *loads[0].norm2 = with_factor([&](auto& factor) { return factor.first_load_norm2(); }) / (list[0].scale * list[0].scale);
     return status;
   }
 
-  Status factorize(const FactorSource& source, std::span<const double> b, double* b_norm2) {
+  Status factorize(const FactorSource& source, std::span<const Load> loads) {
     try {
-      Status status = factorize_in(precision != CholeskyPrecision::double_precision, source, b, b_norm2);
+      Status status = factorize_in(precision != CholeskyPrecision::double_precision, source, loads);
       if (status.ok() || precision != CholeskyPrecision::automatic) return status;
       ++fallbacks;
-      return factorize_in(false, source, b, b_norm2);
+      return factorize_in(false, source, loads);
     } catch (const std::bad_alloc&) {
       return {Outcome::out_of_memory, "Cholesky (block), factorisation: not enough memory"};
     }
+  }
+
+  Status factorize_with_basis(const BlockCsr& a, const NodeBasis& basis, std::span<const Load> loads) {
+    assert(a.pattern == analyzed);
+    assert(basis.dim.empty() || (a.pattern->uniform_dim == 3 && static_cast<Index>(basis.dim.size()) == a.rows()));
+    if (pattern != a.pattern) number_unknowns(*a.pattern);
+    pattern = a.pattern;
+    return factorize({a, basis, true}, loads);
   }
 
   Status analyze(const BlockPattern& p, std::span<const std::uint8_t> mask) {
@@ -145,16 +167,18 @@ Status BlockCholesky::factorize(const BlockCsr& a) {
     me.number_unknowns(*a.pattern);
     me.pattern = a.pattern;
   }
-  return me.factorize({a, {}, a.pattern == me.analyzed}, {}, nullptr);
+  return me.factorize({a, {}, a.pattern == me.analyzed}, {});
 }
 
 Status BlockCholesky::factorize(const BlockCsr& a, const NodeBasis& basis, std::span<const double> b, double* b_norm2) {
-  Implementation& me = *implementation_;
-  assert(a.pattern == me.analyzed);
-  assert(basis.dim.empty() || (a.pattern->uniform_dim == 3 && static_cast<Index>(basis.dim.size()) == a.rows()));
-  if (me.pattern != a.pattern) me.number_unknowns(*a.pattern);
-  me.pattern = a.pattern;
-  return me.factorize({a, basis, true}, b, b_norm2);
+  const Implementation::Load load{b, b_norm2};
+  return implementation_->factorize_with_basis(a, basis, {&load, b.empty() ? 0u : 1u});
+}
+
+Status BlockCholesky::factorize(const BlockCsr& a, const NodeBasis& basis, std::span<const double> b, double& b_norm2,
+                                std::span<const double> r, double& r_norm2) {
+  const Implementation::Load loads[] = {{b, &b_norm2}, {r, &r_norm2}};
+  return implementation_->factorize_with_basis(a, basis, loads);
 }
 
 double BlockCholesky::solve_forward(std::span<const double> b) {

@@ -56,7 +56,13 @@ bool CoreFast::analyze_if_new(const LinearSystem& system, SolveSummary& summary)
 bool CoreFast::factorize(CholeskyPrecision precision, const LinearSystem& system, SolveSummary& summary) {
   factor_.set_precision(precision);
   summary.precision = precision == CholeskyPrecision::single_precision ? "single" : "double";
-  summary.status = factor_.factorize(*system.matrix, free_basis(system), load_, &delta0_);
+  const NodeBasis basis = free_basis(system);
+  if (starts_at_rest_) {
+    summary.status = factor_.factorize(*system.matrix, basis, load_, &delta0_);
+    delta_ = delta0_;
+  } else {
+    summary.status = factor_.factorize(*system.matrix, basis, load_, delta0_, r_, delta_);
+  }
   if (summary.status.ok() && !std::isfinite(delta0_))
     summary.status = {Outcome::not_finite, "the right-hand side overflows the factor's precision"};
   return summary.status.ok();
@@ -75,12 +81,19 @@ double CoreFast::factor_quality(const BlockCsr& a) {
   return factor_.solve_forward(q_) / energy;
 }
 
-// Conjugate gradients for the residual in r_, from x on; `done` iterations came before.
+// r_ for the start x. At rest, x = (I-S) z, it is the load.
+void CoreFast::residual(const LinearSystem& system, std::span<const double> x) {
+  starts_at_rest_ = false;
+  multiply_dot(*system.matrix, x, r_);
+  residual_from_product(system.rhs, r_);
+}
+
+// Conjugate gradients for the residual in r_, whose forward solve came with the factorisation, from x on; `done` iterations came before.
 KrylovResult CoreFast::iterate(const BlockCsr& a, std::span<double> x, int done, int max_iterations, bool watch_factor) {
   KrylovResult result;
   const double limit = options_.tolerance * options_.tolerance * delta0_;
   const auto relative = [&](double d) { return std::sqrt(std::abs(d / delta0_)); };
-  double delta = factor_.solve_forward(r_), previous = 0.0;
+  double delta = delta_, previous = 0.0;
   result.start_value = relative(delta);
   bool is_indefinite = false;
   if (coefficients) *coefficients = {};
@@ -134,16 +147,18 @@ void CoreFast::run(const LinearSystem& system, std::span<double> x, SolveSummary
   load_without_prescribed(system, load_);
   summary.reduce_ms = timer.lap();
 
+  if (system.guess.empty()) {
+    starts_at_rest_ = true;
+    std::ranges::copy(load_, r_.begin());
+  } else {
+    residual(system, x);
+  }
+  summary.solve_ms = timer.lap();
   const bool in_single = factorize(CholeskyPrecision::single_precision, system, summary);
   if (!in_single && !begin_in_double(system, summary)) return;
   summary.factor_ms = timer.lap();
 
   const int limit = iteration_limit(a.dofs());
-  const auto residual = [&] {
-    multiply_dot(a, x, r_);
-    residual_from_product(system.rhs, r_);
-  };
-  residual();
   KrylovResult result;
   if (delta0_ == 0.0) {
     LinearSystem from_rest = system;
@@ -152,15 +167,15 @@ void CoreFast::run(const LinearSystem& system, std::span<double> x, SolveSummary
   } else {
     result = iterate(a, x, 0, limit, in_single);
   }
-  summary.solve_ms = timer.lap();
+  summary.solve_ms += timer.lap();
   const int done = result.iterations;
   if (in_single && !result.status.ok() && done < limit) {
     const KrylovResult first = result;
     summary.status = first.status;
     if (!all_finite(x)) initial_guess(system, x);
+    residual(system, x);
     if (!begin_in_double(system, summary)) return;
     summary.factor_ms += timer.lap();
-    residual();
     result = iterate(a, x, done, limit - done, false);
     result.iterations += done;
     result.start_value = first.start_value;

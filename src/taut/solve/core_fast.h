@@ -7,8 +7,8 @@
 //   (solve/full_space.h).
 // - Ordering and symbolic work are done once per topology and core, whatever contacts do and whatever SolverOptions::reuse_analysis
 //   says; numbers are fresh in every solve.
-// - The stop test needs forward solves only, δ = rᵀ P̃⁻¹ r = |L⁻¹ Uᵀ r|²: δ0 comes with the factorisation, and the backward solve of
-//   the last residual is saved. k iterations take k + 1 forward and k backward solves.
+// - The stop test needs forward solves only, δ = rᵀ P̃⁻¹ r = |L⁻¹ Uᵀ r|²: δ0 and the first δ come with the factorisation, and the backward
+//   solve of the last residual is saved. k iterations take k forward and k backward solves.
 // - The factor is in single precision. When a pivot fails there, or the loop takes long and the factor proves wrong along its search
 //   directions (wᵀ P̃⁻¹ w = cᵀ w for w = P c, looked at every eighth iteration), the factor is computed anew in double precision and the
 //   loop goes on from where it is; the summary counts it.
@@ -31,6 +31,7 @@ class CoreFast : public ConstrainedSolver {
  private:
   bool analyze_if_new(const LinearSystem& system, SolveSummary& summary);
   bool factorize(CholeskyPrecision precision, const LinearSystem& system, SolveSummary& summary);
+  void residual(const LinearSystem& system, std::span<const double> x);
   bool begin_in_double(const LinearSystem& system, SolveSummary& summary);
   KrylovResult iterate(const BlockCsr& a, std::span<double> x, int done, int max_iterations, bool watch_factor);
   double factor_quality(const BlockCsr& a);
@@ -38,7 +39,8 @@ class CoreFast : public ConstrainedSolver {
   std::shared_ptr<const BlockPattern> pattern_;
   std::vector<std::uint8_t> mask_;
   BlockCholesky factor_;
-  double delta0_ = 0.0;                   // b̂ᵀ P̃⁻¹ b̂
+  bool starts_at_rest_ = false;           // no guess: the first residual is the load
+  double delta0_ = 0.0, delta_ = 0.0;     // b̂ᵀ P̃⁻¹ b̂, and of the residual at the factorisation
   std::vector<double> load_, r_, c_, q_;  // b̂, residual, direction, its product
 };
 

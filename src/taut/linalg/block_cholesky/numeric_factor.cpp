@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "taut/base/parallel.h"
@@ -13,10 +14,10 @@ template <class T>
 NumericFactor<T>::NumericFactor(const SupernodeTree& tree, const AnalyzedGraph& graph, const FrontKernels<T>& kernels)
     : kernels_(kernels), layout_(make_factor_layout(tree, graph, kernels_.slab_rows, kernels_.column_group)) {
   panels_ = AlignedArray<T>(layout_.panel_size);
-  vectors_ = AlignedArray<T>(layout_.vector_size);
+  vectors_[0] = AlignedArray<T>(layout_.vector_size);
   fate_.resize(layout_.front.size());
   bad_pivot_.resize(layout_.front.size());
-  norm2_.resize(layout_.front.size());
+  for (auto& parts : norm2_) parts.resize(layout_.front.size());
   dim_.resize(layout_.node.size());
   basis_of_.resize(layout_.node.size());
   plan();
@@ -45,14 +46,17 @@ void NumericFactor<T>::take_dims(const FactorSource& source) {
 }
 
 template <class T>
-Status NumericFactor<T>::factorize(const FactorSource& source, const FactorVectors& vectors, const double* b) {
+Status NumericFactor<T>::factorize(const FactorSource& source, std::span<const Index> start, std::span<const FactorLoad> loads) {
+  assert(loads.size() <= vectors_.size());
   if (planned_threads_ != thread_count()) plan();
+  if (loads.size() > 1 && vectors_[1].bytes() == 0) vectors_[1] = AlignedArray<T>(layout_.vector_size);
   take_dims(source);
   const auto run = [&](Index t) {
     const FrontTask& task = layout_.task[t];
     for (Index s = task.begin; s < task.end; ++s) {
       eliminate(source, s, task.shared);
-      if (b && fate_[s] == Fate::eliminated) forward(s, vectors, b);
+      if (fate_[s] != Fate::eliminated) continue;
+      for (std::size_t k = 0; k < loads.size(); ++k) forward(s, {start, loads[k].scale}, loads[k].b, static_cast<int>(loads.size() - 1 - k));
     }
   };
   run_upwards(layout_.task_tree, std::ref(run));

@@ -14,6 +14,7 @@
 // the rows below; backward, it reads the solution of those rows from its parent's. No two fronts that run at the same time write the same
 // vector.
 
+#include <array>
 #include <span>
 
 #include "taut/base/status.h"
@@ -38,29 +39,39 @@ struct FactorVectors {
   double scale = 1.0;  // multiplies what comes in and divides what goes out: keeps single precision in range
 };
 
+// A right-hand side whose forward solve is done during the factorisation.
+struct FactorLoad {
+  const double* b = nullptr;
+  double scale = 1.0;  // as in FactorVectors
+};
+
 template <class T>
 class NumericFactor {
  public:
   NumericFactor(const SupernodeTree& tree, const AnalyzedGraph& graph, const FrontKernels<T>& kernels = front_kernels<T>());
 
   // The pattern of A has been checked against the analysis. Allocates when the number of threads has changed or more nodes than ever have a
-  // basis of their own, else nothing. With `b`, the forward solve is done on the way, while each front is in the cache.
-  Status factorize(const FactorSource& source, const FactorVectors& vectors, const double* b);
+  // basis of their own, or a second load comes for the first time, else nothing. The forward solves of up to two loads are done on the way,
+  // while each front is in the cache; the last one's y stays.
+  Status factorize(const FactorSource& source, std::span<const Index> start, std::span<const FactorLoad> loads);
   // y = L⁻¹ P Qᵀ b
   void solve_forward(const FactorVectors& vectors, const double* b);
   // x = beta x + Q Pᵀ L⁻ᵀ y, for the y of the last forward solve, which is lost.
   void solve_backward(const FactorVectors& vectors, double beta, double* x);
   // yᵀy of the last forward solve, with its scale: summed in a fixed order.
-  double forward_norm2() const;
+  double forward_norm2() const { return norm2_of(norm2_[0]); }
+  // Of the first of two loads.
+  double first_load_norm2() const { return norm2_of(norm2_[1]); }
 
   const FactorLayout& layout() const { return layout_; }
   const char* instruction_set() const { return kernels_.instruction_set; }
   Offset panel_bytes() const { return panels_.bytes(); }
-  Offset bytes() const { return panels_.bytes() + updates_.bytes() + vectors_.bytes() + layout_.bytes(); }
+  Offset bytes() const { return panels_.bytes() + updates_.bytes() + vectors_[0].bytes() + vectors_[1].bytes() + layout_.bytes(); }
 
  private:
   enum class Fate : std::uint8_t { eliminated, bad_pivot, skipped };
 
+  static double norm2_of(const std::vector<double>& parts);
   void plan();
   void take_dims(const FactorSource& source);
   void eliminate(const FactorSource& source, Index s, bool shared);
@@ -69,16 +80,18 @@ class NumericFactor {
   void add_children(const Front& front, T* target, bool target_is_panel);
   BadPivot factor_panel(const Front& front, T* panel, bool shared) const;
   Status verdict(const BlockCsr& a) const;
-  void forward(Index s, const FactorVectors& vectors, const double* b);
+  // slot: of vectors_ and norm2_; 0 is the one that backward() takes.
+  void forward(Index s, const FactorVectors& vectors, const double* b, int slot = 0);
   void backward(Index s, const FactorVectors& vectors, double beta, double* x);
 
   const FrontKernels<T>& kernels_;
   FactorLayout layout_;
   int planned_threads_ = 0;
-  AlignedArray<T> panels_, updates_, vectors_;
+  AlignedArray<T> panels_, updates_;
+  std::array<AlignedArray<T>, 2> vectors_;
   std::vector<Fate> fate_;           // per front
   std::vector<BadPivot> bad_pivot_;  // per front
-  std::vector<double> norm2_;        // per front: of its part of y
+  std::array<std::vector<double>, 2> norm2_;  // per front: of its part of y
   std::vector<Index> dim_;           // per place in the order: unknowns of the node in the factorised matrix
   std::vector<Index> basis_of_;      // per place: its Q_i in basis_, or -1: the identity
   std::vector<Mat3> basis_;

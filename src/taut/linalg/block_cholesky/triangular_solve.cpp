@@ -44,16 +44,17 @@ void NumericFactor<T>::solve_backward(const FactorVectors& vectors, double beta,
 }
 
 template <class T>
-double NumericFactor<T>::forward_norm2() const {
+double NumericFactor<T>::norm2_of(const std::vector<double>& parts) {
   double sum = 0.0;
-  for (const double part : norm2_) sum += part;
+  for (const double part : parts) sum += part;
   return sum;
 }
 
 template <class T>
-void NumericFactor<T>::forward(Index s, const FactorVectors& vectors, const double* b) {
+void NumericFactor<T>::forward(Index s, const FactorVectors& vectors, const double* b, int slot) {
   const Front& front = layout_.front[s];
-  T* y = vectors_.data() + front.vector;
+  T* const all = vectors_[slot].data();
+  T* y = all + front.vector;
   std::fill(y, y + Offset{front.shape.slabs()} * front.shape.slab_rows, T(0));
   for (Index k = front.first_node; k < front.last_node; ++k) {
     const double* from = b + vectors.start[k];
@@ -67,7 +68,7 @@ void NumericFactor<T>::forward(Index s, const FactorVectors& vectors, const doub
   }
   for (Index i = front.child_begin; i < front.child_end; ++i) {
     const Front& child = layout_.front[layout_.child[i]];
-    const T* from = vectors_.data() + child.vector;
+    const T* from = all + child.vector;
     for (Index q = child.piece_begin; q < child.piece_end; ++q) {
       const RowPiece& piece = layout_.piece[q];
       for (Index r = 0; r < piece.count; ++r) y[piece.to + r] += from[piece.from + r];
@@ -76,15 +77,15 @@ void NumericFactor<T>::forward(Index s, const FactorVectors& vectors, const doub
   kernels_.forward(front.shape, panels_.data() + front.panel, y);
   double sum = 0.0;
   for (Index i = 0; i < front.pivots; ++i) sum += static_cast<double>(y[i]) * static_cast<double>(y[i]);
-  norm2_[s] = sum;
+  norm2_[slot][s] = sum;
 }
 
 template <class T>
 void NumericFactor<T>::backward(Index s, const FactorVectors& vectors, double beta, double* x) {
   const Front& front = layout_.front[s];
-  T* y = vectors_.data() + front.vector;
+  T* y = vectors_[0].data() + front.vector;
   if (front.parent >= 0) {
-    const T* from = vectors_.data() + layout_.front[front.parent].vector;
+    const T* from = vectors_[0].data() + layout_.front[front.parent].vector;
     for (Index q = front.piece_begin; q < front.piece_end; ++q) {
       const RowPiece& piece = layout_.piece[q];
       std::copy(from + piece.to, from + piece.to + piece.count, y + piece.from);
@@ -112,9 +113,9 @@ template void NumericFactor<float>::solve_forward(const FactorVectors&, const do
 template void NumericFactor<double>::solve_forward(const FactorVectors&, const double*);
 template void NumericFactor<float>::solve_backward(const FactorVectors&, double, double*);
 template void NumericFactor<double>::solve_backward(const FactorVectors&, double, double*);
-template double NumericFactor<float>::forward_norm2() const;
-template double NumericFactor<double>::forward_norm2() const;
-template void NumericFactor<float>::forward(Index, const FactorVectors&, const double*);
-template void NumericFactor<double>::forward(Index, const FactorVectors&, const double*);
+template double NumericFactor<float>::norm2_of(const std::vector<double>&);
+template double NumericFactor<double>::norm2_of(const std::vector<double>&);
+template void NumericFactor<float>::forward(Index, const FactorVectors&, const double*, int);
+template void NumericFactor<double>::forward(Index, const FactorVectors&, const double*, int);
 
 }  // namespace taut
