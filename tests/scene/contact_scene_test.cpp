@@ -137,6 +137,70 @@ TEST(ContactSimulation, NodesOfZonesAreEliminatedInTheNextStep) {
   for (const Index node : held) EXPECT_EQ(std::ranges::count(simulation.surface_contact()->state().node, node), 0) << "held twice in a row";
 }
 
+const std::string thrown = R"(
+gravity = [0, 0, 0]
+[time]
+step = 4e-3
+[[cloth]]
+name = "low"
+grid = { nodes = [13, 13], origin = [-0.1, -0.1, 0], u = [0.2, 0, 0], v = [0, 0.2, 0] }
+velocity = [0.4, 0, 2]
+density = 0.15
+jitter = 5e-4
+[[cloth]]
+name = "high"
+grid = { nodes = [11, 11], origin = [-0.02, -0.05, 0.02], u = [0.15, 0.03, 0], v = [-0.03, 0.15, 0.02] }
+velocity = [0, 0, -1]
+density = 0.3
+jitter = 5e-4
+)";
+
+// Of the velocities that the integrator goes on with.
+struct Momentum {
+  Vec3 linear = Vec3::Zero(), angular = Vec3::Zero();
+  double linear_scale = 0.0, angular_scale = 0.0;
+};
+
+Momentum momentum(std::span<const double> mass, std::span<const Vec3> x, std::span<const Vec3> v) {
+  Momentum m;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    m.linear += mass[i] * v[i];
+    m.angular += mass[i] * x[i].cross(v[i]);
+    m.linear_scale += mass[i] * v[i].norm();
+    m.angular_scale += mass[i] * x[i].norm() * v[i].norm();
+  }
+  return m;
+}
+
+// Two sheets thrown at each other where there is nothing else: whatever the response does in a step, it neither pushes nor turns the whole.
+TEST(ContactSimulation, ResponseKeepsTheMomentumOfAnIsolatedClump) {
+  Simulation simulation(read_scene_text(thrown, "/scenes/test.toml", {}));
+  const auto mass = simulation.cloth().external().masses();
+  std::vector<Vec3> x0, x_solved, v_solved;
+  simulation.on_solved = [&](Simulation& s, const SolveSummary&) {
+    x0 = s.state().x;
+    x_solved.assign(s.stepper().x_end().begin(), s.stepper().x_end().end());
+    v_solved.assign(s.stepper().v_end().begin(), s.stepper().v_end().end());
+  };
+  int impacts = 0, steps_moved = 0;
+  for (int k = 0; k < 40; ++k) {
+    StepRecord record;
+    ASSERT_TRUE(simulation.step(record).ok());
+    impacts += record.impacts;
+    if (record.retries > 0) continue;  // then on_solved saw another step than the last
+    const State& end = simulation.state();
+    steps_moved += end.x != x_solved;
+    const double h = simulation.scene().time.step;
+    for (std::size_t i = 0; i < x0.size(); ++i) ASSERT_LT((x0[i] + h * end.v[i] - end.x[i]).norm(), 1e-13);
+    const Momentum before = momentum(mass, x0, v_solved), after = momentum(mass, x0, end.v), at_end = momentum(mass, end.x, end.v);
+    EXPECT_LE((after.linear - before.linear).norm(), 1e-10 * before.linear_scale) << "step " << k;
+    EXPECT_LE((after.angular - before.angular).norm(), 1e-10 * before.angular_scale) << "step " << k;
+    EXPECT_LE((at_end.angular - before.angular).norm(), 1e-10 * before.angular_scale) << "about the new positions, step " << k;
+  }
+  EXPECT_GT(impacts, 100);
+  EXPECT_GT(steps_moved, 10);
+}
+
 const std::string crossed = R"(
 [time]
 step = 4e-3

@@ -8,6 +8,7 @@
 
 #include "taut/base/parallel.h"
 #include "taut/base/timer.h"
+#include "taut/contact/angular_momentum.h"
 #include "taut/contact/impulses.h"
 #include "taut/contact/repulsion.h"
 
@@ -42,11 +43,14 @@ struct ClothContact::Work {
   std::vector<std::uint8_t> moved;  // since the last search
   std::vector<std::uint8_t> awake;  // for the rows that are to be met
 
-  Work(const ClothContactStep& the_step, std::span<Vec3> end, std::span<const double> mass)
-      : step(the_step), x1(end), zones(mass, the_step.held), moved(end.size()), awake(end.size(), 1) {}
+  std::span<const double> mass;
+
+  Work(const ClothContactStep& the_step, std::span<Vec3> end, std::span<const double> masses)
+      : step(the_step), x1(end), zones(masses, the_step.held), moved(end.size()), awake(end.size(), 1), mass(masses) {}
 
   void meet_rows(int iterations, double tolerance) {
     satisfy_rows(rows, step.inverse_mass, step.x0, x1, awake, moved, iterations, tolerance);
+    restore_angular_momentum(rows, mass, step.inverse_mass, step.x0, x1, moved);
     std::ranges::fill(awake, std::uint8_t{0});
   }
   void forget_moved() { std::ranges::fill(moved, std::uint8_t{0}); }

@@ -15,8 +15,8 @@
 // A pair is searched again whenever one of its nodes has moved, so that at the end every pair has been proved free on its final way, or
 // lies in one zone, inside which nothing can meet.
 //
-// The average velocities (x1 - x0)/h keep their linear momentum, but for what pins and solids take. Deterministic: the same bits for any
-// number of threads. One step at a time.
+// The average velocities (x1 - x0)/h keep their linear and angular momentum (angular_momentum.h), but for what pins and solids take and for
+// zones counted as inexact. Deterministic: the same bits for any number of threads. One step at a time.
 
 #include <memory>
 #include <string>

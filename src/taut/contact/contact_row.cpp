@@ -10,8 +10,8 @@ namespace {
 // Of the tolerance: what is not worth that a node's pairs are searched again.
 constexpr double negligible = 0.1;
 
-void push(const ContactRow& row, const Vec3& impulse, std::span<const double> inverse_mass, std::span<Vec3> x1,
-          std::span<std::uint8_t> moved) {
+void push(ContactRow& row, const Vec3& impulse, std::span<const double> inverse_mass, std::span<Vec3> x1, std::span<std::uint8_t> moved) {
+  row.pushed += impulse;
   for (std::size_t k = 0; k < 4 && row.node[k] >= 0; ++k) {
     const Index i = row.node[k];
     const double share = row.weight[k] * inverse_mass[i];
@@ -80,6 +80,7 @@ void weigh(ContactRow& row, std::span<const double> inverse_mass) {
 
 void satisfy_rows(std::span<ContactRow> rows, std::span<const double> inverse_mass, std::span<const Vec3> x0, std::span<Vec3> x1,
                   std::span<std::uint8_t> awake, std::span<std::uint8_t> moved, int iterations, double tolerance) {
+  for (ContactRow& row : rows) row.pushed.setZero();
   for (int k = 0; k < iterations; ++k) {
     double largest = 0.0;
     for (ContactRow& row : rows) {

@@ -28,6 +28,7 @@ struct ContactRow {
   double inverse_mass = 0.0;    // 1/kg: sum_k weight_k² / m_k; 0: nothing here can move
   double lambda = 0.0;
   Vec3 tangential = Vec3::Zero();
+  Vec3 pushed = Vec3::Zero();  // kg m: what the last satisfy_rows gave in all
 };
 
 // The row's points, apart: r of these positions.
