@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "taut/io/obj.h"
 #include "taut/scene/scene_file.h"
 #include "taut/scene/simulation.h"
 #include "verbs.h"
@@ -8,7 +9,37 @@ namespace taut::app {
 
 namespace {
 
-int check(const std::string& path, const std::vector<std::string>& settings) {
+// Where cloths start, an OBJ each: FILE.obj, or FILE_NAME.obj of several.
+void write_start(const ClothModel& cloth, const std::filesystem::path& out) {
+  for (const ClothPart& part : cloth.parts()) {
+    TriangleMesh mesh;
+    const auto nodes = std::span(cloth.surface().positions).subspan(part.first_node, part.node_count);
+    mesh.positions.assign(nodes.begin(), nodes.end());
+    const auto uv = std::span(cloth.surface().texcoords).subspan(part.first_node, part.node_count);
+    mesh.texcoords.assign(uv.begin(), uv.end());
+    for (const Triangle& t : std::span(cloth.surface().triangles).subspan(part.first_triangle, part.triangle_count))
+      mesh.triangles.push_back({t[0] - part.first_node, t[1] - part.first_node, t[2] - part.first_node});
+    std::filesystem::path file = out;
+    if (cloth.parts().size() > 1) file.replace_filename(out.stem().string() + "_" + part.name + ".obj");
+    write_obj(file, mesh);
+    fmt::print("start of cloth '{}': {}\n", part.name, file.string());
+  }
+}
+
+void say_untangled(const Simulation& simulation, const std::string& path, const std::string& out) {
+  const UntangleReport* report = simulation.surface_contact() ? simulation.surface_contact()->untangled() : nullptr;
+  if (!report) {
+    fmt::print("nothing is untangled where contact.self is off and no solid is a mesh\n");
+    return;
+  }
+  fmt::print("{}\n", describe(*report));
+  if (report->moved == 0) return;
+  if (out.empty())
+    fmt::print("`taut check {0} --untangle --out FILE.obj` writes that start; `taut run {0} --untangle` runs from it\n", path);
+}
+
+int check(const std::string& path, std::vector<std::string> settings, bool untangle, const std::string& out) {
+  if (untangle) settings.push_back("contact.untangle=true");
   Scene scene = read_scene(path, settings);
   const std::vector<std::string> doubts = doubtful(scene);
   // Building the model reads the meshes and finds what the file alone cannot show.
@@ -18,6 +49,8 @@ int check(const std::string& path, const std::vector<std::string>& settings) {
   for (const auto& model : cloth.springs()) springs += model->springs().size();
   fmt::print("{}: no errors: {} cloths, {} nodes, {} springs, {} solids, {} steps\n", path, cloth.parts().size(), cloth.nodes(), springs,
              simulation.scene().solids.size(), simulation.scene().time.frames * simulation.scene().time.steps_per_frame);
+  if (simulation.scene().contact.untangle) say_untangled(simulation, path, out);
+  if (!out.empty()) write_start(cloth, out);
   for (const std::string& doubt : doubts) fmt::print("doubtful: {}\n", doubt);
   return 0;
 }
@@ -30,8 +63,14 @@ void add_check_verb(CLI::App& app, int& exit_code) {
   auto settings = std::make_shared<std::vector<std::string>>();
   verb->add_option("SCENE", *scene, "Scene file (TOML)")->required();
   verb->add_option("--set", *settings, "Change a key of the scene: key=value; may be repeated")->take_all()->type_name("KEY=VALUE");
+  auto untangle = std::make_shared<bool>(false);
+  verb->add_flag("--untangle", *untangle, "Draw cloth that intersects at the start, or is inside a solid, apart, and say what that moved");
+  auto out = std::make_shared<std::string>();
+  verb->add_option("--out", *out,
+                   "Write where the cloth starts, after --untangle if that is given, as OBJ (of several cloths: FILE_NAME.obj)")
+      ->type_name("FILE.obj");
   verb->footer("Example: taut check scenes/ball.toml\nExit code 1 when the scene has errors; doubts do not count.");
-  verb->callback([=, &exit_code] { exit_code = check(*scene, *settings); });
+  verb->callback([=, &exit_code] { exit_code = check(*scene, *settings, *untangle, *out); });
 }
 
 }  // namespace taut::app

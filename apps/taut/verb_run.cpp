@@ -13,7 +13,7 @@ struct RunArguments {
   std::string scene, out, solver, export_format;
   int frames = -1, threads = 0;
   std::vector<std::string> settings;
-  bool quiet = false, json_lines = false, no_picture = false;
+  bool quiet = false, json_lines = false, no_picture = false, untangle = false;
 };
 
 int run_scene(const RunArguments& arguments) {
@@ -21,6 +21,7 @@ int run_scene(const RunArguments& arguments) {
   std::vector<std::string> settings = arguments.settings;
   if (arguments.frames >= 0) settings.push_back(fmt::format("time.frames={}", arguments.frames));
   if (!arguments.solver.empty()) settings.push_back("solver.name=" + arguments.solver);
+  if (arguments.untangle) settings.push_back("contact.untangle=true");
   Scene scene = read_scene(arguments.scene, settings);
   const ProgressStyle style = arguments.json_lines ? ProgressStyle::json_lines
                               : arguments.quiet    ? ProgressStyle::quiet
@@ -48,6 +49,8 @@ void add_run_verb(CLI::App& app, int& exit_code) {
   verb->add_option("--set", arguments->settings, "Change a key of the scene: key=value, e.g. cloth.k_stretch=600; may be repeated")
       ->take_all()
       ->type_name("KEY=VALUE");
+  verb->add_flag("--untangle", arguments->untangle,
+                 "Draw cloth that intersects at the start, or is inside a solid, apart before the first step; frame 0 shows it then");
   verb->add_flag("--quiet", arguments->quiet, "No progress and no table");
   verb->add_flag("--json-lines", arguments->json_lines, "Progress as one JSON object a step on stdout");
   verb->add_flag("--no-picture", arguments->no_picture, "Draw no contact sheet at the end");

@@ -16,6 +16,7 @@ struct ContactOptions {
   int sweeps = 8;          // rounds of impulses before what is left is held as rigid zones
   int check_every = 1;     // steps from one exact check for intersections to the next; 0: none
   bool allow_intersections = false;  // start although there are intersections
+  bool untangle = false;             // draw cloth that intersects at the start apart (contact/untangle.h)
   bool operator==(const ContactOptions&) const = default;
 };
 

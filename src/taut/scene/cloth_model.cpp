@@ -121,6 +121,11 @@ void ClothModel::add_pins(const Cloth& cloth, const ClothPart& part) {
   }
 }
 
+void ClothModel::place_start(std::span<const Vec3> x) {
+  start_.x.assign(x.begin(), x.end());
+  surface_.positions = start_.x;
+}
+
 std::vector<const ForceModel*> ClothModel::force_models() const {
   std::vector<const ForceModel*> models;
   for (const auto& model : springs_) models.push_back(model.get());

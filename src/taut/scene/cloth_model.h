@@ -45,6 +45,9 @@ class ClothModel {
   // All cloths' triangles with system node numbers, and texture coordinates (one per node).
   const TriangleMesh& surface() const { return surface_; }
 
+  // Other start positions, one a node; what pins hold must be where it was. m.
+  void place_start(std::span<const Vec3> x);
+
   // The pins' constraints for a step from x at `time` to time + h: displacements to where the path will be.
   void constrain_pins(double time, double h, std::span<const Vec3> x, ConstraintSet& constraints) const;
 

@@ -49,6 +49,10 @@ void finish_means(RunSummary& summary) {
     *mean /= summary.steps;
 }
 
+const UntangleReport* untangling(const Simulation& simulation) {
+  return simulation.surface_contact() ? simulation.surface_contact()->untangled() : nullptr;
+}
+
 void write_summary(const RunSummary& s, const Simulation& simulation, const ResultsFolder& results) {
   const Scene& scene = simulation.scene();
   nlohmann::ordered_json json{{"title", scene.title},
@@ -78,6 +82,12 @@ void write_summary(const RunSummary& s, const Simulation& simulation, const Resu
                               {"instruction_set", instruction_set()},
                               {"peak_memory_MB", s.peak_memory_MB},
                               {"taut_version", TAUT_VERSION}};
+  if (const UntangleReport* untangled = untangling(simulation))
+    json["untangled"] = {{"intersections", untangled->intersections_before}, {"inside_solids", untangled->inside_solids_before},
+                         {"passes", untangled->passes},                      {"nodes_moved", untangled->moved},
+                         {"largest_m", untangled->largest},                  {"mean_m", untangled->mean},
+                         {"stretch_before", untangled->stretch_before},      {"stretch_after", untangled->stretch_after},
+                         {"gap_m", untangled->gap}};
   write_file(results.summary_file(), json.dump(2) + "\n");
 }
 
@@ -94,6 +104,8 @@ RunSummary run(Simulation& simulation, const ResultsFolder& results, RunObserver
   std::filesystem::remove(results.summary_file());
   results.remove_frames_after(first_frame);
   if (first_frame == 0) results.write_frame(0, simulation.state().x);
+  if (const UntangleReport* untangled = untangling(simulation); untangled && first_frame == 0)
+    observer.on_message(describe(*untangled));
   StatsWriter stats(results.stats_file(), simulation.steps_done());
   int frame = first_frame;
   while (simulation.steps_done() < steps_total) {

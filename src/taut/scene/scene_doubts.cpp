@@ -104,6 +104,7 @@ void doubt_layers(Doubts& d, const Cloth& cloth, const ClothEstimate& e) {
 void doubt_start(Doubts& d, const Cloth& cloth, const TriangleMesh& shape, const Solid& solid) {
   const Pose pose = solid.pose(0.0);
   if (solid.shape == SolidShape::mesh) return;  // found as intersections
+  if (d.scene.contact.untangle && d.scene.contact.self) return;
   std::size_t inside = 0;
   double deepest = 0.0;
   for (const Vec3& x : shape.positions) {
@@ -112,7 +113,7 @@ void doubt_start(Doubts& d, const Cloth& cloth, const TriangleMesh& shape, const
     deepest = std::min(deepest, distance);
   }
   if (inside > 0)
-    d.add("{} of the {} nodes of cloth '{}' start inside solid '{}', up to {:.3g} m deep, and will be thrown out: move one of the two",
+    d.add("{} of the {} nodes of cloth '{}' start inside solid '{}', up to {:.3g} m deep, and will be thrown out: move one of the two, or let --untangle do it",
           inside, shape.positions.size(), cloth.name, solid.name, -deepest);
 }
 

@@ -99,6 +99,9 @@ void describe_contact(SchemaVisitor& v, ContactOptions& contact) {
             {.doc = "steps from one exact check for intersections (stats.csv) to the next; 0: none", .min = 0, .max = 1e6});
   v.flag("allow_intersections", contact.allow_intersections,
          {.doc = "starts although the cloths intersect; what has passed through then may stay so"});
+  v.flag("untangle", contact.untangle,
+         {.doc = "cloth that intersects at the start, or is inside a solid, is drawn apart before the first step, as `--untangle` does; "
+                 "pinned nodes stay"});
 }
 
 void describe_wind(SchemaVisitor& v, Wind& wind) {

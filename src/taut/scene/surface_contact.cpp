@@ -33,7 +33,7 @@ std::vector<CollisionBody> bodies_of(const ClothModel& cloth, const std::vector<
 
 }  // namespace
 
-SurfaceContact::SurfaceContact(const Scene& scene, const ClothModel& cloth) : gravity_(scene.gravity), nodes_(cloth.nodes()) {
+SurfaceContact::SurfaceContact(const Scene& scene, ClothModel& cloth) : gravity_(scene.gravity), nodes_(cloth.nodes()) {
   for (const Solid& solid : scene.solids)
     if (solid.shape == SolidShape::mesh) solids_.emplace_back(solid, scene.folder);
   CollisionSurface surface = surface_of(cloth, solids_);
@@ -48,6 +48,7 @@ SurfaceContact::SurfaceContact(const Scene& scene, const ClothModel& cloth) : gr
   contact_ = std::make_unique<ClothContact>(std::move(surface), bodies_of(cloth, solids_), start, mass_, options);
   inverse_mass_.resize(mass_.size(), 0.0);
   held_.resize(mass_.size(), 1);
+  if (options.untangle) untangle_start(scene, cloth);
   if (!options.allow_intersections) refuse_intersections(cloth.start().x);
 }
 
@@ -64,15 +65,21 @@ void SurfaceContact::place_solids(double time, std::vector<Vec3>& x) const {
   }
 }
 
-void SurfaceContact::refuse_intersections(std::span<const Vec3> start) {
+std::string SurfaceContact::places(std::span<const Intersection> found) const {
   constexpr std::size_t most_named = 5;
-  const std::vector<Intersection> found = intersections(0.0, start);
-  if (found.empty()) return;
-  std::string text = fmt::format("cloth intersects at the start, at {} places:", found.size());
+  std::string text;
   for (std::size_t k = 0; k < std::min(found.size(), most_named); ++k) text += "\n  " + describe(found[k]);
   if (found.size() > most_named) text += fmt::format("\n  and {} more", found.size() - most_named);
+  return text;
+}
+
+void SurfaceContact::refuse_intersections(std::span<const Vec3> start) {
+  const std::vector<Intersection> found = intersections(0.0, start);
+  if (found.empty()) return;
   throw InputError(
-      text + "\nMove them apart, or start as it is with contact.allow_intersections = true; what has passed through may then stay so");
+      fmt::format("cloth intersects at the start, at {} places:{}\nMove them apart, let --untangle (contact.untangle = true) do it, or start as "
+                  "it is with contact.allow_intersections = true; what has passed through may then stay so",
+                  found.size(), places(found)));
 }
 
 void SurfaceContact::hold_zones(const State& state, double h, ConstraintSet& constraints) const {

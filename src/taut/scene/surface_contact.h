@@ -10,9 +10,11 @@
 // Nodes are the surface's first vertices, in their order; solids' vertices follow.
 
 #include <memory>
+#include <optional>
 
 #include "taut/contact/cloth_contact.h"
 #include "taut/contact/intersection.h"
+#include "taut/contact/untangle.h"
 #include "taut/scene/cloth_model.h"
 #include "taut/scene/mesh_solid.h"
 
@@ -21,8 +23,8 @@ namespace taut {
 class SurfaceContact {
  public:
   // Reads the solids' meshes. Throws InputError as MeshSolid, and when cloth intersects itself or a solid at the start and the scene does
-  // not allow it.
-  SurfaceContact(const Scene& scene, const ClothModel& cloth);
+  // not allow it. With contact.untangle it is drawn apart, and gets other start positions; throws when that cannot be done.
+  SurfaceContact(const Scene& scene, ClothModel& cloth);
   // Whether the scene needs it: contact.self, or a solid that is a mesh.
   static bool wanted(const Scene& scene);
 
@@ -45,6 +47,8 @@ class SurfaceContact {
   const ClothContactCounts& counts() const { return contact_->counts(); }
   const ClothContact& contact() const { return *contact_; }
   const ZoneState& state() const { return kept_; }
+  // What was done to the start; null without contact.untangle.
+  const UntangleReport* untangled() const { return untangled_ ? &*untangled_ : nullptr; }
   // Throws InputError on a state that does not fit.
   void restore(ZoneState state);
 
@@ -52,6 +56,8 @@ class SurfaceContact {
   void weigh_nodes(const ConstraintSet& pins);
   void place_solids(double time, std::vector<Vec3>& x) const;
   void refuse_intersections(std::span<const Vec3> start);
+  void untangle_start(const Scene& scene, ClothModel& cloth);
+  std::string places(std::span<const Intersection> found) const;
 
   Vec3 gravity_;
   Index nodes_;
@@ -59,9 +65,13 @@ class SurfaceContact {
   std::vector<double> mass_;
   std::unique_ptr<ClothContact> contact_;
   ZoneState kept_;
+  std::optional<UntangleReport> untangled_;
   std::vector<Vec3> x0_, x1_;
   std::vector<double> inverse_mass_;
   std::vector<std::uint8_t> held_;
 };
+
+// "drew 12 intersections apart: ..." in one line.
+std::string describe(const UntangleReport& report);
 
 }  // namespace taut
