@@ -42,8 +42,9 @@ struct Solid {
   Vec3 size = Vec3::Ones();
   double friction = 0.0;
   double thickness = 0.0;
-  // Of a mesh: OBJ file, its lengths' scale and upward axis; and where it deforms, a file of positions (io/motion_file.h), samples a second.
+  // Of a mesh: OBJ, PLY or USD file, in the last which prim; its lengths' scale and upward axis; and where it deforms, a file of positions (io/motion_file.h), samples a second.
   std::filesystem::path mesh, motion;
+  std::string prim;
   double scale = 1.0;
   bool y_up = false;
   double motion_rate = 24.0;

@@ -226,8 +226,11 @@ class ObjReader {
 }  // namespace
 
 TriangleMesh read_obj(const std::filesystem::path& path, std::vector<std::string>* notes) {
-  const std::string text = read_text_file(path);
-  return ObjReader(path.string(), text, notes).read();
+  return parse_obj(path.string(), read_text_file(path), notes);
+}
+
+TriangleMesh parse_obj(const std::string& file, std::string_view text, std::vector<std::string>* notes) {
+  return ObjReader(file, text, notes).read();
 }
 
 }  // namespace taut

@@ -18,6 +18,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "taut/mesh/triangle_mesh.h"
@@ -26,6 +27,9 @@ namespace taut {
 
 // `notes` (when given) receives what was read but may not be what the user meant, one located sentence each.
 TriangleMesh read_obj(const std::filesystem::path& path, std::vector<std::string>* notes = nullptr);
+
+// The same of text that is in memory; `file` stands in messages.
+TriangleMesh parse_obj(const std::string& file, std::string_view text, std::vector<std::string>* notes = nullptr);
 
 // `v` with the shortest decimals that read back to the same doubles, or floats, `vt` likewise when there are any, `f` counted from 1.
 // Through a temporary file; throws InputError when that cannot be written.

@@ -9,7 +9,7 @@ TriangleMesh rest_shape(const Cloth& cloth, const std::filesystem::path& folder)
   if (cloth.is_tube) return make_tube(cloth.tube);
   if (!cloth.from_file) return make_grid(cloth.grid);
   const std::filesystem::path path = cloth.mesh.is_absolute() ? cloth.mesh : folder / cloth.mesh;
-  TriangleMesh mesh = read_mesh(path);
+  TriangleMesh mesh = read_mesh(path, cloth.prim);
   check_cloth_mesh(mesh, path.string());
   for (Vec3& x : mesh.positions) {
     if (cloth.y_up) x = Vec3(x.x(), -x.z(), x.y());

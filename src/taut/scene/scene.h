@@ -54,7 +54,8 @@ struct Cloth {
   GridShape grid;
   TubeShape tube;
   bool is_grid() const { return !from_file && !is_tube; }
-  std::filesystem::path mesh;  // OBJ or PLY; absolute after reading (in a file: relative to it)
+  std::filesystem::path mesh;  // OBJ, PLY or USD; absolute after reading (in a file: relative to it)
+  std::string prim;            // which mesh of a USD file; empty: its only one
   double scale = 1.0;          // of the file's coordinates; 0.01 for centimetres
   Pose placement;              // applied after scale
   bool y_up = false;           // turn Y-up files to Taut's Z-up

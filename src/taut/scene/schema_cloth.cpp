@@ -54,7 +54,12 @@ void describe_shape(SchemaVisitor& v, Cloth& cloth) {
   constexpr const char* mesh_only = "a cloth with mesh";
   constexpr const char* placed_only = "a cloth with tube or mesh (a grid is placed by its origin, u and v)";
   v.file("mesh", cloth.mesh,
-         {.doc = "OBJ or PLY file, relative to the scene file; stretch springs on edges, bend springs across them", .unset = !file});
+         {.doc = "OBJ, PLY or USD file, relative to the scene file; stretch springs on edges, bend springs across them", .unset = !file});
+  v.text("prim", cloth.prim,
+         {.doc = "which mesh of a USD file, by its path (`/World/Shirt`); not needed where there is only one",
+          .unset = cloth.prim.empty(),
+          .applies = file,
+          .only_for = mesh_only});
   v.number("scale", cloth.scale,
            {.doc = "of the file's lengths: 0.01 for centimetres", .min = 1e-6, .max = 1e6, .applies = file, .only_for = mesh_only});
   int up = cloth.y_up ? 1 : 0;

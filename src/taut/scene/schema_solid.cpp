@@ -48,8 +48,13 @@ void describe_solid(SchemaVisitor& v, Solid& solid) {
   const bool mesh = solid.shape == SolidShape::mesh;
   constexpr const char* mesh_only = "a mesh";
   v.file("mesh", solid.mesh,
-         {.doc = "OBJ or PLY file, relative to the scene file; closed or open, cloth stays on the side where it starts",
+         {.doc = "OBJ, PLY or USD file, relative to the scene file; closed or open, cloth stays on the side where it starts",
           .required = true,
+          .applies = mesh,
+          .only_for = mesh_only});
+  v.text("prim", solid.prim,
+         {.doc = "which mesh of a USD file, by its path (`/World/Shirt`); not needed where there is only one",
+          .unset = solid.prim.empty(),
           .applies = mesh,
           .only_for = mesh_only});
   v.number("scale", solid.scale,
