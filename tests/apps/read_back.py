@@ -211,6 +211,20 @@ def check_usd(run):
     points = UsdGeom.Mesh(stage.GetPrimAtPath("/World/sheet_one")).GetPointsAttr()
     assert points.GetTimeSamples() == [3, 6, 9], points.GetTimeSamples()
     near(points.Get(6), 100 * y_up(run.cloth(0)[0][6].astype(float)), 4e-6, "centimetres, Y up")
+    check_usd_is_read_again(run)
+
+
+def check_usd_is_read_again(run):
+    """The cloth of the file in centimetres, Y up, starts where frame 3 was."""
+    (run.folder / "again.toml").write_text(
+        '[time]\nstep = 1e-3\nframes = 1\n[[cloth]]\nmesh = "result/../centimetres/sequence.usda"\nprim = "/World/sheet_one"\n'
+        "density = 0.15\nk_stretch = 500\n")
+    os.environ["TAUT_PYTHON"] = sys.executable
+    run.call("run", "again.toml", "--out", "again", "--quiet", "--no-picture")
+    points, triangles, uv = run.cloth(0)
+    near(np.load(run.folder / "again/frames/000000.npy"), points[3], 1e-6, "points read again")
+    same(np.load(run.folder / "again/frames/triangles.npy"), triangles, "triangles read again")
+    same(np.load(run.folder / "again/frames/uv.npy"), uv, "texture coordinates read again")
 
 
 def check_mesh_files(run, kind):
@@ -267,13 +281,34 @@ def check_vtk(run):
             near(vtk_to_numpy(data.GetPointData().GetArray("stretch")), stretch(points[0], points[frame], triangles, number), 2e-5, "stretch")
             assert data.GetPointData().GetScalars().GetName() == "stretch"
             contact = vtk_to_numpy(data.GetPointData().GetArray("contact"))
-            centre = np.array([0, 2, 0.25]) * frame * FRAME_INTERVAL
-            distance = np.linalg.norm(points[frame] - centre, axis=1) - 0.3
-            same(contact, (distance <= 1.6e-4).astype(np.float32), "contact")
-            touched.append(contact.sum())
+            first = run.cloths[number]["first_node"]
+            recorded = np.load(run.folder / f"result/frames/contact_{frame:06}.npy")
+            assert recorded.dtype == np.uint8 and recorded.shape == (len(run.x[0]),), "docs/results.md"
+            same(contact, recorded[first:first + len(contact)].astype(np.float32), "contact")
+            assert (distance_from_ball(points[frame], frame)[contact > 0] < 1e-4).all(), "what touches is near"
+            touched.append((contact > 0).sum())
     assert max(touched) > 0, "no node touches the ball: the contact field is not tested"
     assert len({e.get("file") for e in entries if e.get("part") == "3"}) == 1, "what does not move has one file"
     check_box(vtk_to_numpy(read_vtp(out / "solid_1.vtp").GetPoints().GetData()))
+    check_vtk_of_an_older_result(run)
+
+
+def check_vtk_of_an_older_result(run):
+    """Without recorded contact the field is made from distances."""
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    for file in (run.folder / "result/frames").glob("contact_*.npy"):
+        file.unlink()
+    out = run.export("vtk", "--out", "older")
+    near_ball = []
+    for frame in TIMES:
+        contact = vtk_to_numpy(read_vtp(out / f"sheet_one_{frame:06}.vtp").GetPointData().GetArray("contact"))
+        same(contact, (distance_from_ball(run.cloth(0)[0][frame], frame) <= 1.6e-4).astype(np.float32), "contact from distances")
+        near_ball.append(contact.sum())
+    assert max(near_ball) > 0
+
+
+def distance_from_ball(points, frame):
+    return np.linalg.norm(points - np.array([0, 2, 0.25]) * frame * FRAME_INTERVAL, axis=1) - 0.3
 
 
 touched = []

@@ -107,6 +107,13 @@ TEST(View, ServesAFinishedRun) {
   EXPECT_EQ(viewer.get("api/frames?first=2&count=3").body, all.substr(2 * frame, 3 * frame));
   EXPECT_EQ(viewer.get("api/frames?first=5&count=100").body, all.substr(5 * frame));
   EXPECT_EQ(viewer.get("api/frames?first=7&count=1").status, 404);
+  std::string contact;
+  for (int f = 0; f <= 6; ++f) contact += npy_numbers(folder / ("r/frames/contact_00000" + std::to_string(f) + ".npy"));
+  EXPECT_EQ(contact.size(), 7u * 72);
+  EXPECT_EQ(scene.at("contact"), true);
+  EXPECT_EQ(viewer.get("api/contact?first=0&count=7").body, contact);
+  EXPECT_EQ(viewer.get("api/contact?first=3&count=2").body, contact.substr(3 * 72, 2 * 72));
+  EXPECT_EQ(viewer.get("api/contact?first=7&count=1").status, 404);
   EXPECT_EQ(viewer.get("api/triangles").body, npy_numbers(folder / "r/frames/triangles.npy"));
   EXPECT_EQ(viewer.get("api/uv").body, npy_numbers(folder / "r/frames/uv.npy"));
 

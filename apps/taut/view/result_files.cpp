@@ -66,6 +66,7 @@ std::string OpenFile::read(std::size_t offset, std::size_t length) const {
 ResultFiles::ResultFiles(const std::filesystem::path& folder) : path_(folder), folder_(open_folder(folder)) {}
 
 std::string ResultFiles::frame_name(int frame) { return fmt::format("{:06}.npy", frame); }
+std::string ResultFiles::contact_name(int frame) { return fmt::format("contact_{:06}.npy", frame); }
 
 std::optional<OpenFile> ResultFiles::open_at(int folder, const std::string& name, const std::filesystem::path& shown) const {
   // O_NONBLOCK: a pipe of that name must not hold us up.
@@ -101,7 +102,7 @@ std::optional<ArrayFile> ResultFiles::open_array(const std::string& name, std::s
     throw InputError({file->path()},
                      fmt::format("holds {} with {} axes; {} was expected, {} to a row", header.type, header.shape.size(), type, row));
   // Divided, not multiplied: a header may claim any number.
-  const std::size_t row_bytes = 4 * static_cast<std::size_t>(row);
+  const std::size_t row_bytes = static_cast<std::size_t>(type.back() - '0') * static_cast<std::size_t>(row);
   if (file->size() < header.data_start || array.bytes() % row_bytes != 0 ||
       array.bytes() / row_bytes != static_cast<std::size_t>(header.shape[0]))
     throw InputError({file->path()}, "has another size than its header says; the file was cut short or damaged");
@@ -109,5 +110,6 @@ std::optional<ArrayFile> ResultFiles::open_array(const std::string& name, std::s
 }
 
 std::optional<ArrayFile> ResultFiles::open_frame(int frame) const { return open_array(frame_name(frame), "<f4", 3); }
+std::optional<ArrayFile> ResultFiles::open_contact(int frame) const { return open_array(contact_name(frame), "|u1", 1); }
 
 }  // namespace taut::app

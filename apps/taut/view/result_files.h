@@ -54,10 +54,14 @@ class ResultFiles {
   // when it is something else.
   std::optional<ArrayFile> open_array(const std::string& name, std::string_view type, std::int64_t row) const;
   std::optional<ArrayFile> open_frame(int frame) const;
+  // What touches each node (scene/node_contact.h).
+  std::optional<ArrayFile> open_contact(int frame) const;
   bool has_frame(int frame) const { return open_in_frames(frame_name(frame)).has_value(); }
+  bool has_contact(int frame) const { return open_in_frames(contact_name(frame)).has_value(); }
 
  private:
   static std::string frame_name(int frame);
+  static std::string contact_name(int frame);
   std::optional<OpenFile> open_at(int folder, const std::string& name, const std::filesystem::path& shown) const;
   std::filesystem::path path_;
   OpenFile folder_;

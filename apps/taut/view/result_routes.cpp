@@ -37,20 +37,24 @@ Answer array_answer(const ArrayFile& array) {
           {}};
 }
 
+using OpenFrame = std::optional<ArrayFile> (ResultFiles::*)(int) const;
+
 // Consecutive frames of one size; the file of the one being read stays open.
 class FrameReader {
  public:
-  FrameReader(const ResultFiles& files, int first, std::size_t frame_bytes) : files_(files), first_(first), frame_bytes_(frame_bytes) {}
+  FrameReader(const ResultFiles& files, OpenFrame open, int first, std::size_t frame_bytes)
+      : files_(files), open_frame_(open), first_(first), frame_bytes_(frame_bytes) {}
   std::string operator()(std::size_t offset, std::size_t most) {
     const int frame = first_ + static_cast<int>(offset / frame_bytes_);
     const std::size_t within = offset % frame_bytes_;
-    if (frame != open_) array_ = files_.open_frame(frame), open_ = frame;
+    if (frame != open_) array_ = (files_.*open_frame_)(frame), open_ = frame;
     if (!array_ || array_->bytes() != frame_bytes_) throw Refusal{404, "the frames have changed meanwhile"};
     return array_->file.read(array_->header.data_start + within, std::min(most, frame_bytes_ - within));
   }
 
  private:
   const ResultFiles& files_;
+  OpenFrame open_frame_;
   int first_, open_ = -1;
   std::size_t frame_bytes_;
   std::optional<ArrayFile> array_;
@@ -75,7 +79,8 @@ Answer ResultRoutes::answer(const std::string& name, const Parameters& parameter
   if (name == "rest_lengths") return array("rest_lengths.npy", "<f4", 1);
   if (name == "solid_triangles") return array(solid_file(parameters, "triangles"), "<i4", 3);
   if (name == "solid_points") return array(solid_file(parameters, "points"), "<f4", 3);
-  if (name == "frames") return frames(parameters);
+  if (name == "frames") return frames(parameters, false);
+  if (name == "contact") return frames(parameters, true);
   if (name == "stats") return stats(parameters);
   throw Refusal{404, "there is nothing of this name"};
 }
@@ -91,17 +96,18 @@ Answer ResultRoutes::array(const std::string& file, const char* type, int row) c
   return array_answer(*found);
 }
 
-Answer ResultRoutes::frames(const Parameters& parameters) const {
+Answer ResultRoutes::frames(const Parameters& parameters, bool contact) const {
+  const OpenFrame open = contact ? &ResultFiles::open_contact : &ResultFiles::open_frame;
   const int first = static_cast<int>(number(parameters, "first", 999'999'999)),
             wanted = static_cast<int>(number(parameters, "count", 100'000));
-  const auto array = files_.open_frame(first);
+  const auto array = (files_.*open)(first);
   if (!array || wanted == 0) throw Refusal{404, "there is no such frame yet"};
   const std::size_t bytes = array->bytes();
   if (bytes == 0) throw Refusal{404, "the frame has no nodes"};
   const int most = std::max(1, static_cast<int>(std::min<std::size_t>(static_cast<std::size_t>(wanted), most_frame_bytes / bytes)));
   int count = 1;
-  while (count < most && files_.has_frame(first + count)) ++count;
-  const auto reader = std::make_shared<FrameReader>(files_, first, bytes);
+  while (count < most && (contact ? files_.has_contact(first + count) : files_.has_frame(first + count))) ++count;
+  const auto reader = std::make_shared<FrameReader>(files_, open, first, bytes);
   return {bytes * static_cast<std::size_t>(count),
           binary,
           [reader](std::size_t offset, std::size_t length) { return (*reader)(offset, length); },

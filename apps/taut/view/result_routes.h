@@ -37,7 +37,7 @@ class ResultRoutes {
  private:
   Answer state();
   Answer array(const std::string& file, const char* type, int row) const;
-  Answer frames(const Parameters& parameters) const;
+  Answer frames(const Parameters& parameters, bool contact) const;
   Answer stats(const Parameters& parameters) const;
 
   ResultFiles files_;

@@ -77,6 +77,14 @@ Json cloths_json(const ResultFiles& files, std::int64_t nodes, std::int64_t tria
   return {{{"name", "cloth"}, {"first_node", 0}, {"nodes", nodes}, {"first_triangle", 0}, {"triangles", triangles}}};
 }
 
+// Whether the run records what touches each node. What is damaged is told when it is asked for.
+bool has_contact(const ResultFiles& files, std::int64_t nodes) try {
+  const auto first = files.open_contact(0);
+  return first && first->header.shape[0] == nodes;
+} catch (const InputError&) {
+  return false;
+}
+
 std::int64_t rows(const std::optional<ArrayFile>& array) { return array ? array->header.shape[0] : 0; }
 
 }  // namespace
@@ -94,6 +102,7 @@ Json scene_json(const ResultFiles& files) {
             {"triangles", rows(triangles)},
             {"springs", rows(springs) == rows(rest) ? rows(springs) : 0},
             {"uv", rows(uv) == rows(start)},
+            {"contact", has_contact(files, rows(start))},
             {"frame_s", 0.04},
             {"frames_expected", nullptr},
             {"cloths", cloths_json(files, rows(start), rows(triangles))},

@@ -218,7 +218,19 @@ Status ClothContact::hold(Work& work) {
   return status;
 }
 
+void ClothContact::note_touched(const Work& work) {
+  touched_.assign(mass_.size(), 0);
+  for (const ContactRow& row : work.rows) {
+    if (!(row.lambda > 0.0)) continue;
+    const bool plane = row.node[1] < 0;
+    const bool solid = plane || std::ranges::any_of(row.node, [&](Index node) { return surface_->is_solid[node] != 0; });
+    for (std::size_t k = 0; k < row.node.size(); ++k)
+      if (row.node[k] >= 0 && row.weight[k] != 0.0) touched_[row.node[k]] |= solid ? touched_solid : touched_cloth;
+  }
+}
+
 void ClothContact::note(const Work& work) {
+  note_touched(work);
   counts_.tested = search_.tested();
   counts_.pushing = static_cast<int>(std::ranges::count_if(work.rows, [](const ContactRow& row) { return row.lambda > 0.0; }));
   counts_.zones = static_cast<int>(work.zones.zones().size());

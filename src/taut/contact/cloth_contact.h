@@ -64,6 +64,8 @@ struct ZoneState {
   bool operator==(const ZoneState&) const = default;
 };
 
+inline constexpr std::uint8_t touched_solid = 1, touched_cloth = 2;
+
 class ClothContact {
  public:
   // start: m, one a vertex, any shape. mass: kg, one a vertex; of solids' vertices ignored. thickness > 0: resolved, see default_thickness.
@@ -80,6 +82,8 @@ class ClothContact {
   double separation() const { return separation_; }
   // Of the last resolve: the nodes that were in zones.
   const ZoneState& zone_state() const { return zones_; }
+  // Of the last resolve, one a vertex: who pushed it at the end, cloth (touched_cloth) or a solid (touched_solid).
+  std::span<const std::uint8_t> touched() const { return touched_; }
   // After a failure: the nodes that the message is about.
   const std::vector<Index>& trouble() const { return trouble_; }
   PairSearch& search() { return search_; }
@@ -100,6 +104,7 @@ class ClothContact {
   Status contradiction(const Work& work, const RigidZone& zone);
   std::string place(Index vertex, const Vec3& x) const;
   void note(const Work& work);
+  void note_touched(const Work& work);
 
   std::unique_ptr<CollisionSurface> surface_;  // fixed in memory: the broad phase refers to it
   std::vector<CollisionBody> bodies_;
@@ -109,6 +114,7 @@ class ClothContact {
   PairSearch search_;
   ClothContactCounts counts_;
   ZoneState zones_;
+  std::vector<std::uint8_t> touched_;
   std::vector<Index> trouble_;
 };
 

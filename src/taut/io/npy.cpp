@@ -2,6 +2,7 @@
 
 #include <cassert>
 #include <cstring>
+#include <limits>
 #include <ostream>
 #include <type_traits>
 
@@ -19,6 +20,7 @@ constexpr const char* type_name() {
   if constexpr (std::is_same_v<T, float>) return "<f4";
   if constexpr (std::is_same_v<T, double>) return "<f8";
   if constexpr (std::is_same_v<T, std::int32_t>) return "<i4";
+  if constexpr (std::is_same_v<T, std::uint8_t>) return "|u1";
 }
 
 std::string shape_text(const std::vector<std::int64_t>& shape) {
@@ -75,15 +77,26 @@ std::vector<Vec3> nodes_of(const std::string& file, const NpyArray<T>& array) {
 }  // namespace
 
 template <class T>
-void write_npy(const std::filesystem::path& path, std::span<const T> values, std::span<const std::int64_t> shape) {
+void write_npy(const std::filesystem::path& path, std::span<const std::int64_t> shape, const std::function<std::span<const T>()>& next) {
   const std::vector<std::int64_t> axes(shape.begin(), shape.end());
-  assert(value_count(axes, static_cast<std::int64_t>(values.size())) == static_cast<std::int64_t>(values.size()));
   write_file(path, [&](std::ostream& out) {
     out << npy_header_text(type_name<T>(), axes);
-    std::string piece(reinterpret_cast<const char*>(values.data()), values.size_bytes());
-    swap_if_big_endian(piece.data(), sizeof(T), values.size());
-    out.write(piece.data(), static_cast<std::streamsize>(piece.size()));
+    std::int64_t missing = value_count(axes, std::numeric_limits<std::int64_t>::max());
+    while (missing > 0) {
+      const std::span<const T> values = next();
+      assert(!values.empty() && std::ssize(values) <= missing);
+      std::string piece(reinterpret_cast<const char*>(values.data()), values.size_bytes());
+      swap_if_big_endian(piece.data(), sizeof(T), values.size());
+      out.write(piece.data(), static_cast<std::streamsize>(piece.size()));
+      missing -= std::ssize(values);
+    }
   });
+}
+
+template <class T>
+void write_npy(const std::filesystem::path& path, std::span<const T> values, std::span<const std::int64_t> shape) {
+  assert(value_count({shape.begin(), shape.end()}, std::ssize(values)) == std::ssize(values));
+  write_npy<T>(path, shape, [&] { return values; });
 }
 
 template <class T>
@@ -94,9 +107,12 @@ NpyArray<T> read_npy(const std::filesystem::path& path) {
 template void write_npy(const std::filesystem::path&, std::span<const float>, std::span<const std::int64_t>);
 template void write_npy(const std::filesystem::path&, std::span<const double>, std::span<const std::int64_t>);
 template void write_npy(const std::filesystem::path&, std::span<const std::int32_t>, std::span<const std::int64_t>);
+template void write_npy(const std::filesystem::path&, std::span<const std::uint8_t>, std::span<const std::int64_t>);
+template void write_npy(const std::filesystem::path&, std::span<const std::int64_t>, const std::function<std::span<const float>()>&);
 template NpyArray<float> read_npy(const std::filesystem::path&);
 template NpyArray<double> read_npy(const std::filesystem::path&);
 template NpyArray<std::int32_t> read_npy(const std::filesystem::path&);
+template NpyArray<std::uint8_t> read_npy(const std::filesystem::path&);
 
 void write_npy(const std::filesystem::path& path, std::span<const Vec3> nodes) {
   const std::int64_t shape[2] = {static_cast<std::int64_t>(nodes.size()), 3};

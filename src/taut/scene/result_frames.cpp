@@ -49,9 +49,10 @@ std::vector<double> node_stretch(const ClothModel& cloth, std::span<const Vec3> 
   return stretch;
 }
 
-std::vector<double> node_contact(std::span<const Solid> solids, double time, std::span<const Vec3> x) {
+std::vector<double> nearness(std::span<const Solid> solids, double time, std::span<const Vec3> x) {
   std::vector<double> contact(x.size(), 0.0);
   for (const Solid& solid : solids) {
+    if (solid.shape == SolidShape::mesh) continue;
     const Pose pose = solid.pose(time);
     const double reach = solid.thickness + 1e-4 + 2e-4 * size_of(solid);
     for (std::size_t i = 0; i < x.size(); ++i)
@@ -83,6 +84,14 @@ std::vector<Vec3> ResultFrames::positions(int frame) const {
   return x;
 }
 
+std::vector<double> ResultFrames::contact(int frame, std::span<const Vec3> x) const {
+  const std::optional<std::vector<std::uint8_t>> recorded = results_.read_contact(frame);
+  if (!recorded) return nearness(scene_.solids, time_of(frame), x);
+  if (recorded->size() != x.size())
+    throw InputError({results_.contact_file(frame).string()}, fmt::format("has {} nodes, the scene has {}", recorded->size(), x.size()));
+  return {recorded->begin(), recorded->end()};
+}
+
 NodeFields ResultFrames::fields(int frame, std::span<const Vec3> x) const {
   NodeFields fields;
   fields.velocity = cloth_.start().v;
@@ -91,7 +100,7 @@ NodeFields ResultFrames::fields(int frame, std::span<const Vec3> x) const {
     for (std::size_t i = 0; i < before.size(); ++i) fields.velocity[i] = (x[i] - before[i]) / interval();
   }
   fields.stretch = node_stretch(cloth_, x);
-  fields.contact = node_contact(scene_.solids, time_of(frame), x);
+  fields.contact = contact(frame, x);
   return fields;
 }
 

@@ -5,7 +5,8 @@
 //   velocity           (x_k - x_{k-1}) / (time between frames), m/s: the mean since the frame before, which with one step a frame is the
 //                      integrator's velocity; frame 0: the scene's initial velocity
 //   stretch            of a node: the largest L/L0 - 1 of its stretch springs; 0 where it has none
-//   contact            1 for nodes whose distance from a solid (outside its thickness) is below 0.1 mm + 2e-4 of the solid's size, else 0
+//   contact            the bits that the run has recorded (scene/node_contact.h) as a number. Of a folder without them: 1 for nodes whose
+//                      distance from an analytic solid (outside its thickness) is below 0.1 mm + 2e-4 of its size, else 0
 
 #include "taut/scene/results.h"
 
@@ -37,6 +38,8 @@ class ResultFrames {
   NodeFields fields(int frame, std::span<const Vec3> x) const;
 
  private:
+  std::vector<double> contact(int frame, std::span<const Vec3> x) const;
+
   ResultsFolder results_;
   Scene scene_;
   ClothModel cloth_;

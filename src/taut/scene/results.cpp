@@ -55,7 +55,25 @@ void write_stretch_springs(const ClothModel& cloth, const fs::path& folder) {
   write_npy<float>(folder / "rest_lengths.npy", lengths, std::array{count});
 }
 
-// Of each solid that is a mesh: its triangles, and where its vertices are at each frame, or once if it never moves.
+std::vector<float> points_of(const TriangleMesh& mesh, std::size_t vertices) {
+  std::vector<float> points;
+  points.reserve(3 * vertices);
+  for (const Vec3& x : std::span(mesh.positions).first(vertices))
+    for (const double value : x) points.push_back(static_cast<float>(value));
+  return points;
+}
+
+// Where the vertices of a solid that is a mesh are at each frame, or once if it never moves. All frames together may not fit into memory.
+void write_solid_points(const fs::path& path, const SolidShapes& shapes, std::size_t solid, std::size_t vertices, const TimeOptions& time) {
+  const std::int64_t samples = shapes.moves(solid) ? time.frames + 1 : 1;
+  std::vector<float> points;
+  int frame = 0;
+  write_npy<float>(path, std::array{samples * static_cast<std::int64_t>(vertices), std::int64_t{3}}, [&]() -> std::span<const float> {
+    points = points_of(shapes.at(solid, frame++ * time.steps_per_frame * time.step).mesh, vertices);
+    return points;
+  });
+}
+
 void write_mesh_solids(const Scene& scene, const fs::path& folder) {
   const auto is_mesh = [](const Solid& solid) { return solid.shape == SolidShape::mesh; };
   if (std::ranges::none_of(scene.solids, is_mesh)) return;
@@ -63,27 +81,20 @@ void write_mesh_solids(const Scene& scene, const fs::path& folder) {
   for (std::size_t k = 0; k < shapes.size(); ++k) {
     if (!is_mesh(shapes.solid(k))) continue;
     std::vector<std::int32_t> triangles;
-    std::vector<float> points;
     std::int32_t vertices = 0;  // those that triangles use: readers take their number from the triangles
-    const int frames = shapes.moves(k) ? scene.time.frames + 1 : 1;
-    for (int frame = 0; frame < frames; ++frame) {
-      const TriangleMesh mesh = shapes.at(k, frame * scene.time.steps_per_frame * scene.time.step).mesh;
-      if (frame == 0)
-        for (const Triangle& t : mesh.triangles)
-          for (const Index vertex : t) triangles.push_back(vertex), vertices = std::max(vertices, vertex + 1);
-      for (const Vec3& x : std::span(mesh.positions).first(static_cast<std::size_t>(vertices)))
-        for (const double value : x) points.push_back(static_cast<float>(value));
-    }
+    for (const Triangle& t : shapes.at(k, 0.0).mesh.triangles)
+      for (const Index vertex : t) triangles.push_back(vertex), vertices = std::max(vertices, vertex + 1);
     write_npy<std::int32_t>(folder / fmt::format("solid_{}_triangles.npy", k), triangles,
                             std::array{static_cast<std::int64_t>(triangles.size() / 3), std::int64_t{3}});
-    write_npy<float>(folder / fmt::format("solid_{}_points.npy", k), points,
-                     std::array{static_cast<std::int64_t>(points.size() / 3), std::int64_t{3}});
+    write_solid_points(folder / fmt::format("solid_{}_points.npy", k), shapes, k, static_cast<std::size_t>(vertices), scene.time);
   }
 }
 
 }  // namespace
 
 fs::path ResultsFolder::frame_file(int frame) const { return folder_ / "frames" / fmt::format("{:06}.npy", frame); }
+
+fs::path ResultsFolder::contact_file(int frame) const { return folder_ / "frames" / fmt::format("contact_{:06}.npy", frame); }
 
 void ResultsFolder::start(const Simulation& simulation) const {
   refuse_foreign_folder(folder_);
@@ -109,9 +120,17 @@ void ResultsFolder::refuse_running() const {
     throw InputError({folder_.string()}, "another taut is writing its results here; wait for its end, or give another folder with --out");
 }
 
-void ResultsFolder::write_frame(int frame, std::span<const Vec3> x) const { write_npy_float(frame_file(frame), x); }
+void ResultsFolder::write_frame(int frame, std::span<const Vec3> x, std::span<const std::uint8_t> contact) const {
+  if (!contact.empty()) write_npy<std::uint8_t>(contact_file(frame), contact, std::array{static_cast<std::int64_t>(contact.size())});
+  write_npy_float(frame_file(frame), x);
+}
 
 std::vector<Vec3> ResultsFolder::read_frame(int frame) const { return read_npy_nodes(frame_file(frame)); }
+
+std::optional<std::vector<std::uint8_t>> ResultsFolder::read_contact(int frame) const {
+  if (!fs::exists(contact_file(frame))) return {};
+  return read_npy<std::uint8_t>(contact_file(frame)).values;
+}
 
 int ResultsFolder::frame_count() const {
   int count = 0;
@@ -120,7 +139,10 @@ int ResultsFolder::frame_count() const {
 }
 
 void ResultsFolder::remove_frames_after(int frame) const {
-  for (int f = frame + 1; fs::exists(frame_file(f)); ++f) fs::remove(frame_file(f));
+  for (int f = frame + 1; fs::exists(frame_file(f)); ++f) {
+    fs::remove(frame_file(f));
+    fs::remove(contact_file(f));
+  }
 }
 
 void ResultsFolder::write_checkpoint(const Simulation& simulation, int frame) const {

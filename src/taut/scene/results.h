@@ -3,6 +3,7 @@
 //
 //   scene.toml          what ran, all defaults filled in
 //   frames/NNNNNN.npy   node positions, float32 (nodes, 3), m; 000000 is the start
+//   frames/contact_NNNNNN.npy what touches each node, uint8 (nodes) (scene/node_contact.h)
 //   frames/triangles.npy int32 (triangles, 3), frames/uv.npy float32 (nodes, 2), frames/cloths.json: which nodes belong to which cloth
 //   frames/solid_K_triangles.npy int32 (triangles, 3), frames/solid_K_points.npy float32 (samples x vertices, 3), m: solids that are meshes,
 //       K counted from 0; one sample a frame, or a single one if the solid never moves
@@ -20,6 +21,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,6 +35,7 @@ class ResultsFolder {
   const std::filesystem::path& folder() const { return folder_; }
   std::filesystem::path scene_file() const { return folder_ / "scene.toml"; }
   std::filesystem::path frame_file(int frame) const;
+  std::filesystem::path contact_file(int frame) const;
   std::filesystem::path stats_file() const { return folder_ / "stats.csv"; }
   std::filesystem::path summary_file() const { return folder_ / "summary.json"; }
   std::filesystem::path checkpoint_file() const { return folder_ / "checkpoint" / "state.bin"; }
@@ -43,8 +46,11 @@ class ResultsFolder {
   void start(const Simulation& simulation) const;
   // Throws InputError while another run writes this folder.
   void refuse_running() const;
-  void write_frame(int frame, std::span<const Vec3> x) const;
+  // `contact`: as node_contact; it is there as soon as the frame is. Without it there is none.
+  void write_frame(int frame, std::span<const Vec3> x, std::span<const std::uint8_t> contact = {}) const;
   std::vector<Vec3> read_frame(int frame) const;
+  // Nothing where the folder was written before there were such files.
+  std::optional<std::vector<std::uint8_t>> read_contact(int frame) const;
   // How many frames there are, counted from 0 without a gap.
   int frame_count() const;
   void remove_frames_after(int frame) const;

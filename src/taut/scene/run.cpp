@@ -9,6 +9,7 @@
 #include "taut/base/parallel.h"
 #include "taut/base/simd.h"
 #include "taut/base/timer.h"
+#include "taut/scene/node_contact.h"
 
 namespace taut {
 
@@ -103,7 +104,7 @@ RunSummary run(Simulation& simulation, const ResultsFolder& results, RunObserver
   // What an earlier part of the run said about its end is over.
   std::filesystem::remove(results.summary_file());
   results.remove_frames_after(first_frame);
-  if (first_frame == 0) results.write_frame(0, simulation.state().x);
+  if (first_frame == 0) results.write_frame(0, simulation.state().x, node_contact(simulation));
   if (const UntangleReport* untangled = untangling(simulation); untangled && first_frame == 0)
     observer.on_message(describe(*untangled));
   StatsWriter stats(results.stats_file(), simulation.steps_done());
@@ -127,7 +128,7 @@ RunSummary run(Simulation& simulation, const ResultsFolder& results, RunObserver
     add_step(summary, record);
     observer.on_step(record, steps_total);
     if (!ends_frame) continue;
-    results.write_frame(++frame, simulation.state().x);
+    results.write_frame(++frame, simulation.state().x, node_contact(simulation));
     results.write_checkpoint(simulation, frame);
     observer.on_frame(frame, time.frames);
   }
