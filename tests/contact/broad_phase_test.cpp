@@ -15,21 +15,18 @@ namespace {
 using test::make_soup;
 using test::Soup;
 
-// The greatest gap between the swept boxes of two sets of corners along an axis, m; negative where they overlap.
+// The greatest gap that the boxes of two sets of corners keep along an axis, on one side, at both ends, m; negative where there is none.
 double gap_between(const Soup& soup, std::span<const Index> a, std::span<const Index> b) {
+  const auto least_difference = [&](const std::vector<Vec3>& x, std::span<const Index> upper, std::span<const Index> lower, int i) {
+    double gap = std::numeric_limits<double>::infinity();
+    for (const Index u : upper)
+      for (const Index l : lower) gap = std::min(gap, x[u][i] - x[l][i]);
+    return gap;
+  };
   double gap = -std::numeric_limits<double>::infinity();
-  for (int i = 0; i < 3; ++i) {
-    double low[2], high[2];
-    int side = 0;
-    for (const auto corners : {a, b}) {
-      low[side] = std::numeric_limits<double>::infinity();
-      high[side] = -low[side];
-      for (const Index v : corners)
-        for (const double x : {soup.x0[v][i], soup.x1[v][i]}) low[side] = std::min(low[side], x), high[side] = std::max(high[side], x);
-      ++side;
-    }
-    gap = std::max({gap, low[0] - high[1], low[1] - high[0]});
-  }
+  for (int i = 0; i < 3; ++i)
+    for (const auto& [upper, lower] : {std::pair(a, b), std::pair(b, a)})
+      gap = std::max(gap, std::min(least_difference(soup.x0, upper, lower, i), least_difference(soup.x1, upper, lower, i)));
   return gap;
 }
 
@@ -131,6 +128,19 @@ TEST(BroadPhase, BoxesAreRoundedOutwards) {
     broad_phase.find_vertex_triangle(pairs);
     EXPECT_EQ(pairs.size(), 6u) << place;
   }
+}
+
+TEST(BroadPhase, FlyingTogetherAddsNoPairs) {
+  Soup soup = make_soup(11, 12, 9, 0, 0.02, 0.0);
+  BroadPhase broad_phase(soup.surface, soup.x0);
+  std::vector<EdgeEdge> at_rest, flying;
+  broad_phase.refit(soup.x0, soup.x0, 1e-3);
+  broad_phase.find_edge_edge(at_rest);
+  for (Vec3& x : soup.x1) x += Vec3(0.5, 0.25, -1.0);
+  broad_phase.refit(soup.x0, soup.x1, 1e-3);
+  broad_phase.find_edge_edge(flying);
+  EXPECT_GT(at_rest.size(), 100u);
+  EXPECT_EQ(flying, at_rest);
 }
 
 TEST(BroadPhase, VerticesThatAreNotFiniteMeetEverything) {

@@ -70,6 +70,7 @@ struct Pieces {
   std::size_t collisions(const std::vector<Vec3>& end) const {
     const CollisionSurface all = surface();
     PairSearch search(all, x0);
+    search.near(x0, end, 1e-6, [](const CollisionPair&) { return 0.0; });
     const std::size_t on_the_way = search.colliding(x0, end, 1e-9, {}, {}).size();
     return on_the_way + find_intersections(search.broad_phase(), end).size();
   }

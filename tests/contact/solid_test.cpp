@@ -88,6 +88,7 @@ TEST(ClosestSurface, stepAlongTheNormalLandsOnTheSurface) {
       const Vec3 p(uniform(random), uniform(random), uniform(random));
       const SurfacePoint nearest = closest_surface(solid, p);
       EXPECT_NEAR(nearest.normal.norm(), 1.0, 1e-14);
+      EXPECT_EQ(surface_distance(solid, p), nearest.distance);
       EXPECT_NEAR(closest_surface(solid, p - nearest.distance * nearest.normal).distance, 0.0, 1e-14) << p.transpose();
     }
 }

@@ -14,18 +14,19 @@ namespace {
 
 using detail::Box;
 using detail::BoxTree;
+using detail::MovingBox;
 
 // v rounded down: the double is made smaller by more than the conversion can make it larger.
 float rounded_down(double v) { return static_cast<float>(v - std::abs(v) * 0x1p-23 - 1e-38); }
 float rounded_up(double v) { return -rounded_down(-v); }
 
-Box swept_box(const Vec3& x0, const Vec3& x1, double half_margin) {
+Box box_around(const Vec3& x, double half_margin) {
   constexpr float infinity = std::numeric_limits<float>::infinity();
   Box box{{-infinity, -infinity, -infinity, 0}, {infinity, infinity, infinity, 0}};
-  if (!x0.allFinite() || !x1.allFinite()) return box;
+  if (!x.allFinite()) return box;
   for (int i = 0; i < 3; ++i) {
-    box.low[i] = rounded_down(std::min(x0[i], x1[i]) - half_margin);
-    box.high[i] = rounded_up(std::max(x0[i], x1[i]) + half_margin);
+    box.low[i] = rounded_down(x[i] - half_margin);
+    box.high[i] = rounded_up(x[i] + half_margin);
   }
   return box;
 }
@@ -47,7 +48,7 @@ std::vector<Index> all_vertices(const CollisionSurface& surface) {
 }  // namespace
 
 struct BroadPhase::Trees {
-  std::vector<Box> boxes;  // of vertices
+  std::vector<MovingBox> boxes;  // of vertices
   BoxTree vertices, edges, triangles;
   // Lists of the parts of a query.
   std::vector<std::vector<VertexTriangle>> vertex_triangle;
@@ -69,12 +70,14 @@ BroadPhase& BroadPhase::operator=(BroadPhase&&) noexcept = default;
 
 void BroadPhase::refit(std::span<const Vec3> x0, std::span<const Vec3> x1, double margin) {
   Trees& trees = *trees_;
+  const bool still = x0.data() == x1.data();
   parallel_for(surface_->vertices, 4096, [&](Index begin, Index end) {
-    for (Index v = begin; v < end; ++v) trees.boxes[v] = swept_box(x0[v], x1[v], 0.5 * margin);
+    for (Index v = begin; v < end; ++v) {
+      trees.boxes[v].at[0] = box_around(x0[v], 0.5 * margin);
+      if (!still) trees.boxes[v].at[1] = box_around(x1[v], 0.5 * margin);
+    }
   });
-  trees.vertices.refit(trees.boxes);
-  trees.edges.refit(trees.boxes);
-  trees.triangles.refit(trees.boxes);
+  for (BoxTree* tree : {&trees.vertices, &trees.edges, &trees.triangles}) tree->refit(trees.boxes, still);
 }
 
 void BroadPhase::find_vertex_triangle(std::vector<VertexTriangle>& pairs, std::span<const std::uint8_t> moved) {

@@ -1,10 +1,11 @@
 #pragma once
 // Broad phase: which vertices, edges and triangles of a surface may come near each other in a step.
 //
-//   swept box   of a vertex, an edge or a triangle: the smallest box around where its corners are at x0 and at x1 (m). Straight paths
-//               stay inside
-//   margin      m: every pair whose swept boxes are at most `margin` apart along each axis is reported; so every pair that is ever
-//               within `margin` of each other during the step (the reverse does not hold)
+//   moving box  of a vertex, an edge or a triangle: the smallest box around its corners at x0 and that at x1 (m), and all that lie between
+//               the two in the course of the step. Straight paths stay inside
+//   margin      m: every pair is reported that is not more than `margin` apart along one axis, on the same side, at x0 and at x1; so every
+//               pair that is ever within `margin` of each other during the step (the reverse does not hold). Cloth that flies as a whole
+//               gives no more pairs than cloth at rest
 //
 // Left out: pairs that share a vertex; pairs with both sides on solids; where `moved` is given, pairs without a vertex marked in it.
 // Each remaining pair is reported once. Lists come in an order that depends on the surface and the positions, not on the number of threads.

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "taut/base/parallel.h"
-#include "taut/base/simd.h"
+#include "taut/contact/detection/clear_pairs.h"
 #include "taut/contact/detection/separating_planes.h"
 #include "taut/contact/proximity.h"
 
@@ -81,48 +81,29 @@ Impact edge_edge_impact(const Vec3& a0, const Vec3& b0, const Vec3& c0, const Ve
   return impact_of<SeparatingPlanes::EdgeEdge, MovingEdges>({&a0, &b0, &c0, &d0}, {&a1, &b1, &c1, &d1}, options);
 }
 
-// Of count pairs: the places of those that need a walk, to `left`; how many. The corners of pair k are corners[k].
-TAUT_MULTIVERSION Index not_far_apart(const std::array<Index, 4>* corners, Index count, bool edges, const Vec3* x0, const Vec3* x1,
-                                      double separation, Index* left) {
-  Index found = 0;
-  for (Index k = 0; k < count; ++k) {
-    Corners at_start, at_end;
-    for (int i = 0; i < 4; ++i) at_start[i] = x0 + corners[k][i], at_end[i] = x1 + corners[k][i];
-    bool apart;
-    if (edges) {
-      const SeparatingPlanes planes(SeparatingPlanes::EdgeEdge{}, at_start, at_end);
-      apart = planes.in_range() && planes.far_apart(separation);
-    } else {
-      const SeparatingPlanes planes(SeparatingPlanes::VertexTriangle{}, at_start, at_end);
-      apart = planes.in_range() && planes.far_apart(separation);
-    }
-    left[found] = k;
-    found += !apart;
-  }
-  return found;
-}
-
 namespace {
 
 constexpr Index impact_chunk = 512;
 
 // Hits of each chunk go to a list of its own; lists are joined in order. corners_of(k): of pair k.
-template <class CornersOf, class Test>
-void collect_hits(Index pairs, bool edges, std::span<const Vec3> x0, std::span<const Vec3> x1, double separation,
-                  const CornersOf& corners_of, const Test& test, std::vector<PairImpact>& hits) {
+template <class CornersOf>
+void collect_hits(Index pairs, bool edges, std::span<const Vec3> x0, std::span<const Vec3> x1, const CcdOptions& options,
+                  const CornersOf& corners_of, std::vector<PairImpact>& hits) {
   const Index chunks = (pairs + impact_chunk - 1) / impact_chunk;
   std::vector<std::vector<PairImpact>> found(static_cast<std::size_t>(chunks));
+  const auto decide = edges ? edge_edge_impact : vertex_triangle_impact;
   parallel_for(chunks, 1, [&](Index begin, Index end) {
-    std::array<std::array<Index, 4>, impact_chunk> corners;
-    std::array<Index, impact_chunk> left;
+    std::array<detail::PairCorners, impact_chunk> corners;
+    std::array<std::uint8_t, impact_chunk> clear;
     for (Index c = begin; c < end; ++c) {
       const Index first = c * impact_chunk, count = std::min(impact_chunk, pairs - first);
       for (Index k = 0; k < count; ++k) corners[k] = corners_of(first + k);
-      const Index walks = not_far_apart(corners.data(), count, edges, x0.data(), x1.data(), separation, left.data());
-      for (Index w = 0; w < walks; ++w) {
-        const auto [i, j, k, l] = corners[left[w]];
-        const Impact impact = test(x0[i], x0[j], x0[k], x0[l], x1[i], x1[j], x1[k], x1[l]);
-        if (impact.hit) found[c].push_back({first + left[w], impact.time});
+      detail::find_clear(corners.data(), count, edges, x0.data(), x1.data(), options.minimum_separation, clear.data());
+      for (Index k = 0; k < count; ++k) {
+        if (clear[k] & detail::clear_throughout) continue;
+        const auto [i, j, l, m] = corners[k];
+        const Impact impact = decide(x0[i], x0[j], x0[l], x0[m], x1[i], x1[j], x1[l], x1[m], options);
+        if (impact.hit) found[c].push_back({first + k, impact.time});
       }
     }
   });
@@ -136,10 +117,9 @@ void find_impacts(const CollisionSurface& surface, std::span<const Vec3> x0, std
                   std::span<const VertexTriangle> pairs, const CcdOptions& options, std::vector<PairImpact>& hits) {
   const auto corners_of = [&](Index k) {
     const Triangle& t = surface.triangles[pairs[k].triangle];
-    return std::array<Index, 4>{pairs[k].vertex, t[0], t[1], t[2]};
+    return detail::PairCorners{pairs[k].vertex, t[0], t[1], t[2]};
   };
-  const auto test = [&](const auto&... corners) { return vertex_triangle_impact(corners..., options); };
-  collect_hits(static_cast<Index>(pairs.size()), false, x0, x1, options.minimum_separation, corners_of, test, hits);
+  collect_hits(static_cast<Index>(pairs.size()), false, x0, x1, options, corners_of, hits);
 }
 
 void find_impacts(const CollisionSurface& surface, std::span<const Vec3> x0, std::span<const Vec3> x1, std::span<const EdgeEdge> pairs,
@@ -147,10 +127,15 @@ void find_impacts(const CollisionSurface& surface, std::span<const Vec3> x0, std
   const auto corners_of = [&](Index k) {
     const auto [a, b] = surface.edges[pairs[k].first];
     const auto [c, d] = surface.edges[pairs[k].second];
-    return std::array<Index, 4>{a, b, c, d};
+    return detail::PairCorners{a, b, c, d};
   };
-  const auto test = [&](const auto&... corners) { return edge_edge_impact(corners..., options); };
-  collect_hits(static_cast<Index>(pairs.size()), true, x0, x1, options.minimum_separation, corners_of, test, hits);
+  collect_hits(static_cast<Index>(pairs.size()), true, x0, x1, options, corners_of, hits);
+}
+
+void find_impacts(std::span<const std::array<Index, 4>> pairs, bool edges, std::span<const Vec3> x0, std::span<const Vec3> x1,
+                  const CcdOptions& options, std::vector<PairImpact>& hits) {
+  collect_hits(
+      static_cast<Index>(pairs.size()), edges, x0, x1, options, [&](Index k) { return pairs[k]; }, hits);
 }
 
 }  // namespace taut

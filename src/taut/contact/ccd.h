@@ -29,6 +29,7 @@
 //
 // Callable from any thread; no allocation.
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -65,6 +66,9 @@ struct PairImpact {
 void find_impacts(const CollisionSurface& surface, std::span<const Vec3> x0, std::span<const Vec3> x1,
                   std::span<const VertexTriangle> pairs, const CcdOptions& options, std::vector<PairImpact>& hits);
 void find_impacts(const CollisionSurface& surface, std::span<const Vec3> x0, std::span<const Vec3> x1, std::span<const EdgeEdge> pairs,
+                  const CcdOptions& options, std::vector<PairImpact>& hits);
+// The same of pairs given by their corners, in the order of the functions above: all of edges, or all of a vertex and a triangle.
+void find_impacts(std::span<const std::array<Index, 4>> pairs, bool edges, std::span<const Vec3> x0, std::span<const Vec3> x1,
                   const CcdOptions& options, std::vector<PairImpact>& hits);
 
 }  // namespace taut

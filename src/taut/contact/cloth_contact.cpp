@@ -49,13 +49,11 @@ struct ClothContact::Work {
       : step(the_step), x1(end), zones(masses, the_step.held), moved(end.size()), awake(end.size(), 1), mass(masses) {}
 
   void meet_rows(int iterations, double tolerance) {
-    satisfy_rows(rows, step.inverse_mass, step.x0, x1, awake, moved, iterations, tolerance);
+    satisfy_rows(rows, x1, awake, moved, iterations, tolerance);
     restore_angular_momentum(rows, mass, step.inverse_mass, step.x0, x1, moved);
     std::ranges::fill(awake, std::uint8_t{0});
   }
   void forget_moved() { std::ranges::fill(moved, std::uint8_t{0}); }
-  bool few_moved() const { return 4 * std::ranges::count_if(moved, std::identity{}) < std::ssize(moved); }
-  bool none_moved() const { return std::ranges::none_of(moved, std::identity{}); }
 };
 
 ClothContact::ClothContact(CollisionSurface surface, std::vector<CollisionBody> bodies, std::span<const Vec3> start,
@@ -112,7 +110,7 @@ void ClothContact::repel(Work& work) {
     work.rows.push_back(repulsion_row(pair, thickness_of(pair.pair), friction_of(pair.pair)));
   }
   if (work.step.solids) add_touched(work);
-  for (ContactRow& row : work.rows) weigh(row, work.step.inverse_mass);
+  for (ContactRow& row : work.rows) weigh(row, work.step.inverse_mass, work.step.x0);
   counts_.near_ms += timer.lap();
   work.meet_rows(repulsion_iterations, tolerance_share * options_.thickness);
   counts_.impulse_ms += timer.lap();
@@ -128,30 +126,17 @@ void ClothContact::add_touched(Work& work) const {
   }
 }
 
-// Collisions of the pairs with a node in `moved` (all, where it is empty), and those nodes' obstacles. On the same way as the search of
-// near pairs, but for the nodes in `moved`: of all.
-void ClothContact::find_trouble(Work& work, std::span<const std::uint8_t> moved, bool same_way) {
+// Collisions of the pairs with a node in `moved` (all, where it is empty), and those nodes' obstacles.
+void ClothContact::find_trouble(Work& work, std::span<const std::uint8_t> moved) {
   const auto skip = [&](const CollisionPair& pair) { return ignored(pair) || work.zones.together(pair.node); };
-  const std::span<const std::uint8_t> blocked_among = same_way ? std::span<const std::uint8_t>() : moved;
-  work.trouble.pairs.clear();
-  if (same_way) {
-    const auto skip_moved = [&](const CollisionPair& pair) {
-      return skip(pair) || std::ranges::any_of(pair.node, [&](Index node) { return moved[node] != 0; });
-    };
-    work.trouble.pairs = search_.colliding_on_the_same_way(work.step.x0, work.x1, separation_, skip_moved);
-    if (work.none_moved()) moved = {};
-  }
-  if (!same_way || !moved.empty()) {
-    const std::vector<CollidingPair> others = search_.colliding(work.step.x0, work.x1, separation_, moved, skip);
-    work.trouble.pairs.insert(work.trouble.pairs.end(), others.begin(), others.end());
-  }
+  work.trouble.pairs = search_.colliding(work.step.x0, work.x1, separation_, moved, skip);
   work.trouble.obstacles.clear();
   if (!work.step.solids || work.step.solids->solids().empty()) return;
   const Index nodes = work.step.solids->nodes();
   std::vector<std::uint8_t> blocked(static_cast<std::size_t>(nodes), 0);
   parallel_for(nodes, node_grain, [&](Index begin, Index end) {
     for (Index i = begin; i < end; ++i)
-      blocked[i] = !work.step.held[i] && (blocked_among.empty() || blocked_among[i]) && work.step.solids->obstacle(i, work.x1[i]);
+      blocked[i] = !work.step.held[i] && (moved.empty() || moved[i]) && work.step.solids->obstacle(i, work.x1[i]);
   });
   for (Index i = 0; i < nodes; ++i) {
     if (!blocked[i]) continue;
@@ -163,9 +148,7 @@ void ClothContact::find_trouble(Work& work, std::span<const std::uint8_t> moved,
 // True when nothing was found.
 bool ClothContact::sweep(Work& work, int round) {
   Timer timer;
-  // At first everything has to be searched: where few nodes were moved, most pairs are still those of the near ones' search.
-  const bool first = round == 0, same_way = first && work.few_moved();
-  find_trouble(work, first && !same_way ? std::span<const std::uint8_t>() : work.moved, same_way);
+  find_trouble(work, round == 0 ? std::span<const std::uint8_t>() : work.moved);
   counts_.detect_ms += timer.lap();
   work.forget_moved();
   if (work.trouble.none()) return true;
@@ -178,11 +161,11 @@ bool ClothContact::sweep(Work& work, int round) {
     const double thickness = thickness_of(hit.pair), start = closest(hit.pair, work.step.x0).distance;
     const double gap = std::min(share * thickness, start + parting_share * thickness);
     work.rows.push_back(impact_row(hit, work.step.x0, work.x1, gap, friction_of(hit.pair)));
-    weigh(work.rows.back(), work.step.inverse_mass);
+    weigh(work.rows.back(), work.step.inverse_mass, work.step.x0);
   }
   for (const auto& [node, obstacle] : work.trouble.obstacles) {
     work.rows.push_back(obstacle_row(node, obstacle, work.step.x0[node]));
-    weigh(work.rows.back(), work.step.inverse_mass);
+    weigh(work.rows.back(), work.step.inverse_mass, work.step.x0);
   }
   // What could not be moved still collides, and must be found again.
   for (const CollidingPair& hit : work.trouble.pairs)
@@ -211,7 +194,7 @@ Status ClothContact::hold(Work& work) {
       status = contradiction(work, *zone);
       break;
     }
-    find_trouble(work, work.moved, false);
+    find_trouble(work, work.moved);
     work.forget_moved();
   }
   counts_.zone_ms += timer.lap();

@@ -97,7 +97,7 @@ class ClothContact {
   void repel(Work& work);
   void add_touched(Work& work) const;
   bool sweep(Work& work, int round);
-  void find_trouble(Work& work, std::span<const std::uint8_t> moved, bool same_way);
+  void find_trouble(Work& work, std::span<const std::uint8_t> moved);
   Status hold(Work& work);
   Status unresolved(const Work& work, std::span<const Index> nodes, const std::string& why);
   Status stuck(const Work& work);

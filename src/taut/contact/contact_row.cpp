@@ -10,20 +10,37 @@ namespace {
 // Of the tolerance: what is not worth that a node's pairs are searched again.
 constexpr double negligible = 0.1;
 
-void push(ContactRow& row, const Vec3& impulse, std::span<const double> inverse_mass, std::span<Vec3> x1, std::span<std::uint8_t> moved) {
-  row.pushed += impulse;
-  for (std::size_t k = 0; k < 4 && row.node[k] >= 0; ++k) {
-    const Index i = row.node[k];
-    const double share = row.weight[k] * inverse_mass[i];
-    if (share == 0.0) continue;
-    x1[i] += share * impulse;
-    moved[i] = 1;
+// A row's nodes while it is met.
+struct RowNodes {
+  ContactRow& row;
+  std::array<Vec3, 4> x;
+  std::size_t count = 0;
+
+  RowNodes(ContactRow& the_row, std::span<const Vec3> x1) : row(the_row) {
+    for (; count < 4 && row.node[count] >= 0; ++count) x[count] = x1[row.node[count]];
   }
-}
+  Vec3 separation() const {
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t k = 0; k < count; ++k) sum += row.weight[k] * x[k];
+    return sum;
+  }
+  void push(const Vec3& impulse) {
+    row.pushed += impulse;
+    for (std::size_t k = 0; k < count; ++k)
+      if (row.share[k] != 0.0) x[k] += row.share[k] * impulse;
+  }
+  void store(std::span<Vec3> x1, std::span<std::uint8_t> moved) const {
+    for (std::size_t k = 0; k < count; ++k) {
+      if (row.share[k] == 0.0) continue;
+      x1[row.node[k]] = x[k];
+      moved[row.node[k]] = 1;
+    }
+  }
+};
 
 // What friction adds to bring the tangential motion to that of the other side, within Coulomb's cone.
-Vec3 friction_step(const ContactRow& row, std::span<const Vec3> x0, std::span<const Vec3> x1) {
-  const Vec3 motion = separation(row, x1) - separation(row, x0) - row.carried;
+Vec3 friction_step(const ContactRow& row, const Vec3& r) {
+  const Vec3 motion = r - row.start - row.carried;
   const Vec3 slip = motion - row.normal.dot(motion) * row.normal;
   Vec3 wanted = row.tangential - slip / row.inverse_mass;
   const double limit = row.friction * row.lambda, size = wanted.norm();
@@ -32,27 +49,29 @@ Vec3 friction_step(const ContactRow& row, std::span<const Vec3> x0, std::span<co
 }
 
 // Returns how far the row's points moved against one another.
-double satisfy(ContactRow& row, std::span<const double> inverse_mass, std::span<const Vec3> x0, std::span<Vec3> x1,
-               std::span<std::uint8_t> moved, double tolerance) {
-  const double missing = row.target - row.normal.dot(separation(row, x1));
+double satisfy(ContactRow& row, std::span<Vec3> x1, std::span<std::uint8_t> moved, double tolerance) {
+  RowNodes nodes(row, x1);
+  const double missing = row.target - row.normal.dot(nodes.separation());
   const double lambda = std::max(0.0, row.lambda + missing / row.inverse_mass);
   if (lambda == 0.0 && row.lambda == 0.0) return 0.0;
-  Vec3 impulse = Vec3::Zero();
   double motion = std::abs(lambda - row.lambda) * row.inverse_mass;
   if (motion > negligible * tolerance) {
-    impulse = (lambda - row.lambda) * row.normal;
+    nodes.push((lambda - row.lambda) * row.normal);
     row.lambda = lambda;
   } else {
     motion = 0.0;
   }
-  if (motion > 0.0) push(row, impulse, inverse_mass, x1, moved);
-  if (row.friction == 0.0) return motion;
-  const Vec3 tangential = friction_step(row, x0, x1);
-  const double sideways = tangential.norm() * row.inverse_mass;
-  if (sideways <= negligible * tolerance) return motion;
-  row.tangential += tangential;
-  push(row, tangential, inverse_mass, x1, moved);
-  return std::max(motion, sideways);
+  if (row.friction != 0.0) {
+    const Vec3 tangential = friction_step(row, nodes.separation());
+    const double sideways = tangential.norm() * row.inverse_mass;
+    if (sideways > negligible * tolerance) {
+      row.tangential += tangential;
+      nodes.push(tangential);
+      motion = std::max(motion, sideways);
+    }
+  }
+  if (motion > 0.0) nodes.store(x1, moved);
+  return motion;
 }
 
 bool is_awake(const ContactRow& row, std::span<const std::uint8_t> awake) {
@@ -73,19 +92,23 @@ Vec3 separation(const ContactRow& row, std::span<const Vec3> x) {
   return sum;
 }
 
-void weigh(ContactRow& row, std::span<const double> inverse_mass) {
+void weigh(ContactRow& row, std::span<const double> inverse_mass, std::span<const Vec3> x0) {
   row.inverse_mass = 0.0;
-  for (std::size_t k = 0; k < 4 && row.node[k] >= 0; ++k) row.inverse_mass += row.weight[k] * row.weight[k] * inverse_mass[row.node[k]];
+  for (std::size_t k = 0; k < 4 && row.node[k] >= 0; ++k) {
+    row.inverse_mass += row.weight[k] * row.weight[k] * inverse_mass[row.node[k]];
+    row.share[k] = row.weight[k] * inverse_mass[row.node[k]];
+  }
+  row.start = separation(row, x0);
 }
 
-void satisfy_rows(std::span<ContactRow> rows, std::span<const double> inverse_mass, std::span<const Vec3> x0, std::span<Vec3> x1,
-                  std::span<std::uint8_t> awake, std::span<std::uint8_t> moved, int iterations, double tolerance) {
+void satisfy_rows(std::span<ContactRow> rows, std::span<Vec3> x1, std::span<std::uint8_t> awake, std::span<std::uint8_t> moved,
+                  int iterations, double tolerance) {
   for (ContactRow& row : rows) row.pushed.setZero();
   for (int k = 0; k < iterations; ++k) {
     double largest = 0.0;
     for (ContactRow& row : rows) {
       if (row.inverse_mass == 0.0 || !is_awake(row, awake)) continue;
-      const double motion = satisfy(row, inverse_mass, x0, x1, moved, tolerance);
+      const double motion = satisfy(row, x1, moved, tolerance);
       if (motion > 0.0) wake(row, awake);
       largest = std::max(largest, motion);
     }

@@ -3,78 +3,111 @@
 #include <algorithm>
 
 #include "taut/base/parallel.h"
+#include "taut/contact/detection/clear_pairs.h"
 
 namespace taut {
 
 namespace {
 
-constexpr Index chunk = 2048;  // pairs handled by one task
+constexpr Index chunk = 1024;                  // pairs handled by one task
+constexpr double rounding_share = 1.0 - 1e-9;  // of the slack
 
-// The plane across the line between the middles at x0: does it keep all corners further apart than `distance` at x0, and at x1 too? What is
-// linear in between is then clear on the whole way, by far more than rounding.
-struct Clearance {
-  bool at_start = false, throughout = false;
-};
-
-Clearance clearance(const CollisionPair& pair, std::span<const Vec3> x0, std::span<const Vec3> x1, double distance) {
-  const auto& k = pair.node;
-  const Vec3 n = pair.edges ? Vec3((x0[k[0]] + x0[k[1]]) - (x0[k[2]] + x0[k[3]])) : Vec3(3.0 * x0[k[0]] - (x0[k[1]] + x0[k[2]] + x0[k[3]]));
-  const double least = distance * n.norm();
-  const auto separates = [&](std::span<const Vec3> x) {
-    // Relative to the first corner: the error is then one of the pair's size, not of its place.
-    const Vec3& a = x[k[0]];
-    const double b = n.dot(x[k[1]] - a), c = n.dot(x[k[2]] - a), d = n.dot(x[k[3]] - a);
-    return (pair.edges ? std::min(0.0, b) - std::max(c, d) : -std::max({b, c, d})) > least;
-  };
-  if (!separates(x0)) return {};
-  return {true, separates(x1)};
+bool any_in(const std::array<Index, 4>& nodes, std::span<const std::uint8_t> marked) {
+  return marked[nodes[0]] | marked[nodes[1]] | marked[nodes[2]] | marked[nodes[3]];
 }
 
 }  // namespace
 
+// Adds those of the broad phase's pairs that come within reach on the way to end_, and to `close` those that may be within it at the start.
 template <class Pair>
-void PairSearch::add_near(std::vector<Pair>& pairs, std::span<const Vec3> x0, std::span<const Vec3> x1, double largest,
-                          const std::function<double(const CollisionPair&)>& thickness, std::vector<NearPair>& near) {
+void PairSearch::keep_candidates(const std::vector<Pair>& pairs, std::span<const Vec3> x0, Candidates& candidates,
+                                 std::vector<CollisionPair>* close) {
   const Index count = static_cast<Index>(pairs.size()), chunks = (count + chunk - 1) / chunk;
+  std::vector<std::vector<Corners>> kept(static_cast<std::size_t>(chunks));
+  std::vector<std::vector<CollisionPair>> found(static_cast<std::size_t>(chunks));
+  parallel_for(chunks, 1, [&](Index begin, Index end) {
+    std::array<Corners, chunk> corners;
+    std::array<std::uint8_t, chunk> clear;
+    for (Index c = begin; c < end; ++c) {
+      const Index first = c * chunk, in_chunk = std::min(chunk, count - first);
+      for (Index k = 0; k < in_chunk; ++k) corners[k] = pair_of(broad_phase_.surface(), pairs[first + k]).node;
+      detail::find_clear(corners.data(), in_chunk, candidates.edges, x0.data(), end_.data(), reach_, clear.data());
+      for (Index k = 0; k < in_chunk; ++k) {
+        if (clear[k] & detail::clear_throughout) continue;
+        kept[c].push_back(corners[k]);
+        if (close && !(clear[k] & detail::clear_at_start)) found[c].push_back({corners[k], candidates.edges});
+      }
+    }
+  });
+  for (const auto& part : kept) candidates.pairs.insert(candidates.pairs.end(), part.begin(), part.end());
+  if (!close) return;
+  for (const auto& part : found) close->insert(close->end(), part.begin(), part.end());
+}
+
+void PairSearch::add_candidates(std::span<const Vec3> x0, std::span<const std::uint8_t> moved, std::vector<CollisionPair>* close) {
+  broad_phase_.refit(x0, end_, reach_);
+  broad_phase_.find_vertex_triangle(vertex_triangle_, moved);
+  broad_phase_.find_edge_edge(edge_edge_, moved);
+  tested_ += std::ssize(vertex_triangle_) + std::ssize(edge_edge_);
+  keep_candidates(vertex_triangle_, x0, triangles_, close);
+  keep_candidates(edge_edge_, x0, edges_, close);
+}
+
+std::vector<NearPair> PairSearch::near(std::span<const Vec3> x0, std::span<const Vec3> x1, double reach,
+                                       const std::function<double(const CollisionPair&)>& thickness) {
+  reach_ = reach;
+  end_.assign(x1.begin(), x1.end());
+  triangles_.pairs.clear();
+  edges_.pairs.clear();
+  std::vector<CollisionPair> close;
+  add_candidates(x0, {}, &close);
+  const Index count = static_cast<Index>(close.size()), chunks = (count + chunk - 1) / chunk;
   std::vector<std::vector<NearPair>> found(static_cast<std::size_t>(chunks));
-  std::vector<std::vector<Pair>> kept(static_cast<std::size_t>(chunks));
   parallel_for(chunks, 1, [&](Index begin, Index end) {
     for (Index c = begin; c < end; ++c)
       for (Index k = c * chunk; k < std::min(count, (c + 1) * chunk); ++k) {
-        const CollisionPair pair = pair_of(broad_phase_.surface(), pairs[k]);
-        const Clearance clear = clearance(pair, x0, x1, largest);
-        if (clear.throughout) continue;
-        kept[c].push_back(pairs[k]);
-        if (clear.at_start) continue;
-        const NearPair candidate{pair, closest(pair, x0)};
+        const NearPair candidate{close[k], closest(close[k], x0)};
         if (candidate.proximity.inside && candidate.proximity.distance < thickness(candidate.pair)) found[c].push_back(candidate);
       }
   });
-  pairs.clear();
-  for (const auto& part : kept) pairs.insert(pairs.end(), part.begin(), part.end());
-  for (const auto& part : found) near.insert(near.end(), part.begin(), part.end());
-}
-
-std::vector<NearPair> PairSearch::near(std::span<const Vec3> x0, std::span<const Vec3> x1, double largest,
-                                       const std::function<double(const CollisionPair&)>& thickness) {
-  broad_phase_.refit(x0, x1, largest);
-  broad_phase_.find_vertex_triangle(vertex_triangle_);
-  broad_phase_.find_edge_edge(edge_edge_);
-  tested_ += std::ssize(vertex_triangle_) + std::ssize(edge_edge_);
   std::vector<NearPair> near;
-  add_near(vertex_triangle_, x0, x1, largest, thickness, near);
-  add_near(edge_edge_, x0, x1, largest, thickness, near);
+  for (const auto& part : found) near.insert(near.end(), part.begin(), part.end());
   return near;
 }
 
-template <class Pair>
-void PairSearch::add_colliding(const std::vector<Pair>& pairs, std::span<const Vec3> x0, std::span<const Vec3> x1, double separation,
-                               const std::function<bool(const CollisionPair&)>& skip, std::vector<CollidingPair>& colliding) {
+// Sees to it that what comes within `separation` on the way to x1 is a candidate.
+void PairSearch::follow(std::span<const Vec3> x0, std::span<const Vec3> x1, double separation) {
+  const double slack = 0.5 * rounding_share * (reach_ - separation);
+  far_.assign(x1.size(), 0);
+  bool any = false;
+  for (std::size_t v = 0; v < x1.size(); ++v) {
+    // What is not finite is far, too.
+    if ((x1[v] - end_[v]).squaredNorm() <= slack * slack) continue;
+    end_[v] = x1[v];
+    far_[v] = 1;
+    any = true;
+  }
+  if (!any) return;
+  for (Candidates* candidates : {&triangles_, &edges_})
+    std::erase_if(candidates->pairs, [&](const Corners& pair) { return any_in(pair, far_); });
+  add_candidates(x0, far_, nullptr);
+}
+
+void PairSearch::add_colliding(const Candidates& candidates, std::span<const Vec3> x0, std::span<const Vec3> x1, double separation,
+                               std::span<const std::uint8_t> moved, const std::function<bool(const CollisionPair&)>& skip,
+                               std::vector<CollidingPair>& colliding) {
+  std::span<const Corners> pairs = candidates.pairs;
+  if (!moved.empty()) {
+    with_moved_.clear();
+    std::ranges::copy_if(pairs, std::back_inserter(with_moved_), [&](const Corners& pair) { return any_in(pair, moved); });
+    pairs = with_moved_;
+  }
+  tested_ += std::ssize(pairs);
   CcdOptions options;
   options.minimum_separation = separation;
-  find_impacts(broad_phase_.surface(), x0, x1, pairs, options, impacts_);
+  find_impacts(pairs, candidates.edges, x0, x1, options, impacts_);
   for (const PairImpact& found : impacts_) {
-    const CollisionPair pair = pair_of(broad_phase_.surface(), pairs[found.pair]);
+    const CollisionPair pair{pairs[found.pair], candidates.edges};
     if (skip && skip(pair)) continue;
     CollidingPair hit{pair, found.time, separation};
     const double start = kept_share * closest(pair, x0).distance;
@@ -94,18 +127,10 @@ void PairSearch::add_colliding(const std::vector<Pair>& pairs, std::span<const V
 std::vector<CollidingPair> PairSearch::colliding(std::span<const Vec3> x0, std::span<const Vec3> x1, double separation,
                                                  std::span<const std::uint8_t> moved,
                                                  const std::function<bool(const CollisionPair&)>& skip) {
-  broad_phase_.refit(x0, x1, separation);
-  broad_phase_.find_vertex_triangle(vertex_triangle_, moved);
-  broad_phase_.find_edge_edge(edge_edge_, moved);
-  tested_ += std::ssize(vertex_triangle_) + std::ssize(edge_edge_);
-  return colliding_on_the_same_way(x0, x1, separation, skip);
-}
-
-std::vector<CollidingPair> PairSearch::colliding_on_the_same_way(std::span<const Vec3> x0, std::span<const Vec3> x1, double separation,
-                                                                 const std::function<bool(const CollisionPair&)>& skip) {
+  follow(x0, x1, separation);
   std::vector<CollidingPair> colliding;
-  add_colliding(vertex_triangle_, x0, x1, separation, skip, colliding);
-  add_colliding(edge_edge_, x0, x1, separation, skip, colliding);
+  add_colliding(triangles_, x0, x1, separation, moved, skip, colliding);
+  add_colliding(edges_, x0, x1, separation, moved, skip, colliding);
   return colliding;
 }
 

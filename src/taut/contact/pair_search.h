@@ -1,6 +1,15 @@
 #pragma once
 // Which pairs are close at the start of a step, and which collide on the way: the broad phase, then closest points or continuous detection.
 // All results in a fixed order, the same for any number of threads.
+//
+// One search serves a whole step. near() keeps the pairs that come within `reach` of each other on the way to x1, the candidates: those of
+// the broad phase that no plane keeps apart (detection/clear_pairs.h). The response then changes the end of the way. Where each node's end
+// is within
+//
+//   slack = (reach - separation)/2
+//
+// of where it was, two points are nearer than before by 2 slack at most, so that whatever comes within `separation` is still a candidate.
+// Pairs of nodes that went further are looked for anew.
 
 #include <functional>
 
@@ -23,38 +32,44 @@ class PairSearch {
  public:
   PairSearch(const CollisionSurface& surface, std::span<const Vec3> start) : broad_phase_(surface, start) {}
 
-  // Pairs closer than thickness(pair) <= largest (m) at x0. The broad phase is made for the whole way to x1, and what a plane keeps further
-  // apart than `largest` throughout is left out.
-  std::vector<NearPair> near(std::span<const Vec3> x0, std::span<const Vec3> x1, double largest,
+  // Begins the search of a step from x0 to x1. Returns the pairs closer than thickness(pair) <= reach (m) at x0. reach > 0.
+  std::vector<NearPair> near(std::span<const Vec3> x0, std::span<const Vec3> x1, double reach,
                              const std::function<double(const CollisionPair&)>& thickness);
 
-  // Pairs with a vertex in `moved` (all, where it is empty) that come nearer than `separation` between x0 and x1; for pairs that start
-  // nearer than that, nearer than `kept_share` of where they start. Pairs for which skip() holds are left out.
+  // Pairs with a vertex in `moved` (all, where it is empty) that come nearer than `separation` < reach between x0, that of near(), and x1;
+  // for pairs that start nearer than that, nearer than `kept_share` of where they start. Pairs for which skip() holds are left out.
   std::vector<CollidingPair> colliding(std::span<const Vec3> x0, std::span<const Vec3> x1, double separation,
                                        std::span<const std::uint8_t> moved, const std::function<bool(const CollisionPair&)>& skip);
 
-  // All colliding pairs, among those of the broad phase of near(), which must have been called for the same x0 and x1, with largest >=
-  // separation.
-  std::vector<CollidingPair> colliding_on_the_same_way(std::span<const Vec3> x0, std::span<const Vec3> x1, double separation,
-                                                       const std::function<bool(const CollisionPair&)>& skip);
-
   BroadPhase& broad_phase() { return broad_phase_; }
-  Offset tested() const { return tested_; }  // pairs of the broad phase so far
+  Offset tested() const { return tested_; }  // pairs of the broad phase, and candidates tested for collisions, so far
   void reset_count() { tested_ = 0; }
 
   static constexpr double kept_share = 0.8;
 
  private:
+  using Corners = std::array<Index, 4>;  // of a pair, as in CollisionPair
+  struct Candidates {
+    std::vector<Corners> pairs;
+    bool edges = false;
+  };
+  void add_candidates(std::span<const Vec3> x0, std::span<const std::uint8_t> moved, std::vector<CollisionPair>* close);
   template <class Pair>
-  void add_near(std::vector<Pair>& pairs, std::span<const Vec3> x0, std::span<const Vec3> x1, double largest,
-                const std::function<double(const CollisionPair&)>& thickness, std::vector<NearPair>& near);
-  template <class Pair>
-  void add_colliding(const std::vector<Pair>& pairs, std::span<const Vec3> x0, std::span<const Vec3> x1, double separation,
-                     const std::function<bool(const CollisionPair&)>& skip, std::vector<CollidingPair>& colliding);
+  void keep_candidates(const std::vector<Pair>& pairs, std::span<const Vec3> x0, Candidates& candidates, std::vector<CollisionPair>* close);
+  void follow(std::span<const Vec3> x0, std::span<const Vec3> x1, double separation);
+  void add_colliding(const Candidates& candidates, std::span<const Vec3> x0, std::span<const Vec3> x1, double separation,
+                     std::span<const std::uint8_t> moved, const std::function<bool(const CollisionPair&)>& skip,
+                     std::vector<CollidingPair>& colliding);
 
   BroadPhase broad_phase_;
+  double reach_ = 0.0;
+  std::vector<Vec3> end_;  // the candidates' x1
+  Candidates triangles_, edges_{{}, true};
+  std::vector<std::uint8_t> far_;  // nodes whose end is further away from that than slack
+  // Kept for their memory.
   std::vector<VertexTriangle> vertex_triangle_;
   std::vector<EdgeEdge> edge_edge_;
+  std::vector<Corners> with_moved_;
   std::vector<PairImpact> impacts_;
   Offset tested_ = 0;
 };

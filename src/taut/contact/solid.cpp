@@ -82,4 +82,13 @@ SurfacePoint closest_surface(const Solid& solid, const Vec3& local) {
   return {};
 }
 
+double surface_distance(const Solid& solid, const Vec3& local) {
+  if (solid.shape == SolidShape::plane) return local.z();
+  if (solid.shape == SolidShape::sphere) return local.norm() - solid.radius;
+  if (solid.shape != SolidShape::box) return closest_surface(solid, local).distance;
+  const Vec3 beyond = local.cwiseAbs() - 0.5 * solid.size;
+  const double outside = beyond.cwiseMax(0.0).norm();
+  return outside > 0.0 ? outside : beyond.maxCoeff();
+}
+
 }  // namespace taut

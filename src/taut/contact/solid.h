@@ -42,7 +42,8 @@ struct Solid {
   Vec3 size = Vec3::Ones();
   double friction = 0.0;
   double thickness = 0.0;
-  // Of a mesh: OBJ, PLY or USD file, in the last which prim; its lengths' scale and upward axis; and where it deforms, a file of positions (io/motion_file.h), samples a second.
+  // Of a mesh: OBJ, PLY or USD file, in the last which prim; its lengths' scale and upward axis; and where it deforms, a file of positions
+  // (io/motion_file.h), samples a second.
   std::filesystem::path mesh, motion;
   std::string prim;
   double scale = 1.0;
@@ -62,11 +63,14 @@ struct Solid {
 };
 
 // Signed distance (m, negative inside, thickness not counted) from a point in local coordinates, and the outward unit normal there. At
-// points with no unique normal (a sphere's centre, a box's edges from inside) one of the nearest is returned, always finite and of length 1.
+// points with no unique normal (a sphere's centre, a box's edges from inside) one of the nearest is returned, always finite and of
+// length 1.
 struct SurfacePoint {
   double distance = 0.0;
   Vec3 normal = Vec3::UnitZ();
 };
 SurfacePoint closest_surface(const Solid& solid, const Vec3& local);
+// Its distance alone, to the same bits.
+double surface_distance(const Solid& solid, const Vec3& local);
 
 }  // namespace taut

@@ -11,6 +11,7 @@ namespace {
 constexpr double floating_share = 2e-4;
 // Cosine between normals beyond which two points count as on opposite sides: a path that only cuts a corner or a cap is no passage.
 constexpr double other_side = -0.5;
+constexpr double way_bound = 1.0 + 1e-6;  // covers rounding
 
 double radius_about_origin(const Solid& solid) {
   switch (solid.shape) {
@@ -53,14 +54,7 @@ SolidStep::SolidStep(const Solid& solid, double t, double h)
   end_rotation_ = end.rotation.toRotationMatrix();
   start_translation_ = start.translation;
   end_translation_ = end.translation;
-}
-
-bool SolidStep::surely_far(const Vec3& x0, const Vec3& x1, double largest_gap) const {
-  // |x1 - c1| > reach + |relative motion|, by (a + b)² <= 2 a² + 2 b²: most nodes of a sheet leave here without a square root.
-  const Vec3 to_end = x1 - end_translation_;
-  const Vec3 relative = to_end - (x0 - start_translation_);
-  const double reach = bounding_radius_ + std::max(largest_gap, 0.0);
-  return to_end.squaredNorm() > 2.0 * (reach * reach + relative.squaredNorm());
+  rotates_ = start_rotation_ != end_rotation_;
 }
 
 double SolidStep::share_inside(const Vec3& q0, const Vec3& q1, double depth) const {
@@ -80,10 +74,18 @@ double SolidStep::share_inside(const Vec3& q0, const Vec3& q1, double depth) con
 }
 
 bool SolidStep::meets(const Vec3& x0, const Vec3& x1, double largest_gap) const {
-  if (surely_far(x0, x1, largest_gap)) return false;
-  const Vec3 q1 = end_local(x1);
-  if (gap(q1) <= largest_gap) return true;
+  const Vec3 to_end = x1 - end_translation_;
+  const Vec3 relative = to_end - (x0 - start_translation_);
+  // |x1 - c1| > reach + |relative motion|, by (a + b)² <= 2 a² + 2 b²: most nodes of a sheet leave here without a square root.
+  const double reach = bounding_radius_ + std::max(largest_gap, 0.0);
+  if (to_end.squaredNorm() > 2.0 * (reach * reach + relative.squaredNorm())) return false;
+  const Vec3 q1 = end_rotation_.transpose() * to_end;
+  const double end = gap(q1);
+  if (end <= largest_gap) return true;
+  // A distance changes by no more than the way in the solid's frame: further out than that at the end, the node was outside all the time.
+  if (!rotates_ && end > 0.0 && end * end > way_bound * relative.squaredNorm()) return false;
   const Vec3 q0 = start_local(x0);
+  if (rotates_ && end > 0.0 && end * end > way_bound * (q1 - q0).squaredNorm()) return false;
   return gap(q0) >= 0.0 && share_inside(q0, q1, -std::abs(largest_gap)) >= 0.0;
 }
 

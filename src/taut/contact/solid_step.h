@@ -46,9 +46,8 @@ class SolidStep {
  private:
   Vec3 start_local(const Vec3& x) const { return start_rotation_.transpose() * (x - start_translation_); }
   Vec3 end_local(const Vec3& x) const { return end_rotation_.transpose() * (x - end_translation_); }
-  double gap(const Vec3& local) const { return closest_surface(*solid_, local).distance - solid_->thickness; }
+  double gap(const Vec3& local) const { return surface_distance(*solid_, local) - solid_->thickness; }
   Vec3 onto_surface(const Vec3& local) const;
-  bool surely_far(const Vec3& x0, const Vec3& x1, double largest_gap) const;
   // Some share of the path q0 -> q1 whose gap is below `depth`, or a negative number when there is none.
   double share_inside(const Vec3& q0, const Vec3& q1, double depth) const;
 
@@ -57,6 +56,7 @@ class SolidStep {
   Vec3 start_translation_, end_translation_;
   double bounding_radius_;  // of the thickened solid about its origin; infinite for a plane
   double floating_tolerance_;
+  bool rotates_ = false;
 };
 
 }  // namespace taut

@@ -60,8 +60,9 @@ BoxTree::BoxTree(std::vector<Index> corners, int corners_per_item, std::span<con
     for (int k = 0; k < corners_per_item; ++k) corner_groups_[slot / 8 * corners_per_item + k].corner[slot % 8] = this->corners(slot)[k];
 
   BoxGroup empty;
-  for (int i = 0; i < 3; ++i)
-    for (int l = 0; l < 8; ++l) empty.low[i][l] = empty.high[i][l] = std::numeric_limits<float>::quiet_NaN();
+  for (int t = 0; t < 2; ++t)
+    for (int i = 0; i < 3; ++i)
+      for (int l = 0; l < 8; ++l) empty.low[t][i][l] = empty.high[t][i][l] = std::numeric_limits<float>::quiet_NaN();
   std::size_t boxes = count;
   do {
     boxes = (boxes + 7) / 8;
@@ -104,47 +105,49 @@ LevelMasks BoxTree::any_moved(std::span<const std::uint8_t> moved) const {
       false);
 }
 
-void BoxTree::fit_items(Index g, std::span<const Box> vertices) {
+void BoxTree::fit_items(Index g, int t, std::span<const MovingBox> vertices) {
   BoxGroup& group = levels_[0][g];
   for (Index l = 0; l < lanes_used(0, g); ++l) {
     const Index* of_item = corners(8 * g + l);
-    Box box = vertices[of_item[0]];
+    Box box = vertices[of_item[0]].at[t];
     for (int k = 1; k < corners_per_item_; ++k) {
-      const Box& other = vertices[of_item[k]];
+      const Box& other = vertices[of_item[k]].at[t];
       for (int i = 0; i < 4; ++i) {
         box.low[i] = std::min(box.low[i], other.low[i]);
         box.high[i] = std::max(box.high[i], other.high[i]);
       }
     }
     for (int i = 0; i < 3; ++i) {
-      group.low[i][l] = box.low[i];
-      group.high[i][l] = box.high[i];
+      group.low[t][i][l] = box.low[i];
+      group.high[t][i][l] = box.high[i];
     }
   }
 }
 
-void BoxTree::fit_children(int level, Index g) {
+void BoxTree::fit_children(int level, Index g, int t) {
   BoxGroup& group = levels_[level][g];
   for (Index l = 0; l < lanes_used(level, g); ++l) {
     const Index below = 8 * g + l;
     const BoxGroup& child = levels_[level - 1][below];
     for (int i = 0; i < 3; ++i) {
-      float low = child.low[i][0], high = child.high[i][0];
+      float low = child.low[t][i][0], high = child.high[t][i][0];
       for (Index k = 1; k < lanes_used(level - 1, below); ++k) {
-        low = std::min(low, child.low[i][k]);
-        high = std::max(high, child.high[i][k]);
+        low = std::min(low, child.low[t][i][k]);
+        high = std::max(high, child.high[t][i][k]);
       }
-      group.low[i][l] = low;
-      group.high[i][l] = high;
+      group.low[t][i][l] = low;
+      group.high[t][i][l] = high;
     }
   }
 }
 
-void BoxTree::refit(std::span<const Box> vertices) {
+void BoxTree::refit(std::span<const MovingBox> vertices, bool still) {
+  still_ = still;
   if (items() == 0) return;
   for (int level = 0; level < height(); ++level)
     parallel_for(static_cast<Index>(levels_[level].size()), refit_grain, [&](Index begin, Index end) {
-      for (Index g = begin; g < end; ++g) level == 0 ? fit_items(g, vertices) : fit_children(level, g);
+      for (Index g = begin; g < end; ++g)
+        for (int t = 0; t < (still ? 1 : 2); ++t) level == 0 ? fit_items(g, t, vertices) : fit_children(level, g, t);
     });
 }
 

@@ -27,36 +27,50 @@ struct alignas(16) Box {
   float high[4];
 };
 
+// At the start and at the end of a step.
+struct MovingBox {
+  Box at[2];
+};
+
 struct alignas(32) BoxGroup {
-  float low[3][8];
-  float high[3][8];
+  float low[2][3][8];
+  float high[2][3][8];
 };
 
 using Mask = std::uint32_t;  // of eight lanes
 
-// The lanes of `group` that `box` overlaps.
-inline Mask overlapping(const BoxGroup& group, const Box& box) {
+// The lanes of `group` that `box` may overlap at some time: not those that are on the same side of it along an axis at both ends, and so,
+// since all corners move straight on, all the time. still: both ends are alike, and only the first is there.
+inline Mask overlapping(const BoxGroup& group, const MovingBox& box, bool still) {
+  Mask mask = 0;
 #if defined(__SSE2__)
-  Mask mask = 0;
-  for (int half = 0; half < 2; ++half) {
-    __m128 both = _mm_cmple_ps(_mm_load_ps(group.low[0] + 4 * half), _mm_set1_ps(box.high[0]));
-    both = _mm_and_ps(both, _mm_cmpge_ps(_mm_load_ps(group.high[0] + 4 * half), _mm_set1_ps(box.low[0])));
-    for (int i = 1; i < 3; ++i) {
-      both = _mm_and_ps(both, _mm_cmple_ps(_mm_load_ps(group.low[i] + 4 * half), _mm_set1_ps(box.high[i])));
-      both = _mm_and_ps(both, _mm_cmpge_ps(_mm_load_ps(group.high[i] + 4 * half), _mm_set1_ps(box.low[i])));
+  const auto below = [&](int t, int i, int half) {
+    return _mm_cmple_ps(_mm_load_ps(group.low[t][i] + half), _mm_set1_ps(box.at[t].high[i]));
+  };
+  const auto above = [&](int t, int i, int half) {
+    return _mm_cmpge_ps(_mm_load_ps(group.high[t][i] + half), _mm_set1_ps(box.at[t].low[i]));
+  };
+  for (int half = 0; half < 8; half += 4) {
+    __m128 both = _mm_castsi128_ps(_mm_set1_epi32(-1));
+    for (int i = 0; i < 3; ++i) {
+      __m128 low = below(0, i, half), high = above(0, i, half);
+      if (!still) low = _mm_or_ps(low, below(1, i, half)), high = _mm_or_ps(high, above(1, i, half));
+      both = _mm_and_ps(both, _mm_and_ps(low, high));
     }
-    mask |= static_cast<Mask>(_mm_movemask_ps(both)) << (4 * half);
+    mask |= static_cast<Mask>(_mm_movemask_ps(both)) << half;
   }
-  return mask;
 #else
-  Mask mask = 0;
   for (int l = 0; l < 8; ++l) {
     bool both = true;
-    for (int i = 0; i < 3; ++i) both &= group.low[i][l] <= box.high[i] && group.high[i][l] >= box.low[i];
+    for (int i = 0; i < 3; ++i) {
+      bool below = group.low[0][i][l] <= box.at[0].high[i], above = group.high[0][i][l] >= box.at[0].low[i];
+      if (!still) below |= group.low[1][i][l] <= box.at[1].high[i], above |= group.high[1][i][l] >= box.at[1].low[i];
+      both &= below & above;
+    }
     mask |= static_cast<Mask>(both) << l;
   }
-  return mask;
 #endif
+  return mask;
 }
 
 // Eight vertex indices side by side: one corner of each item of a group, -1 in empty lanes.
@@ -78,9 +92,14 @@ inline Mask holding(const CornerGroup& group, Index v) {
 #endif
 }
 
-inline Box box_of_lane(const BoxGroup& group, int lane) {
-  return {{group.low[0][lane], group.low[1][lane], group.low[2][lane], 0},
-          {group.high[0][lane], group.high[1][lane], group.high[2][lane], 0}};
+inline MovingBox box_of_lane(const BoxGroup& group, int lane) {
+  MovingBox box;
+  for (int t = 0; t < 2; ++t)
+    for (int i = 0; i < 3; ++i) {
+      box.at[t].low[i] = group.low[t][i][lane];
+      box.at[t].high[i] = group.high[t][i][lane];
+    }
+  return box;
 }
 
 // One bit a lane, at every level. A bit above level 0 says something of all (`and`) or of any (`or`) items below it.
@@ -91,8 +110,9 @@ class BoxTree {
   // corners: `corners_per_item` vertices an item, one item after the other.
   BoxTree(std::vector<Index> corners, int corners_per_item, std::span<const Vec3> positions, std::span<const std::uint8_t> is_solid);
 
-  // Boxes of all vertices, from which those of the items are made.
-  void refit(std::span<const Box> vertices);
+  // Boxes of all vertices, from which those of the items are made. still: only at the start, the end is the same.
+  void refit(std::span<const MovingBox> vertices, bool still);
+  bool still() const { return still_; }
 
   // Lanes with an item that has a corner marked in `moved`, one byte a vertex.
   LevelMasks any_moved(std::span<const std::uint8_t> moved) const;
@@ -118,10 +138,11 @@ class BoxTree {
  private:
   template <class OfItem>
   LevelMasks masks(const OfItem& of_item, bool all) const;
-  void fit_items(Index g, std::span<const Box> vertices);
-  void fit_children(int level, Index g);
+  void fit_items(Index g, int t, std::span<const MovingBox> vertices);
+  void fit_children(int level, Index g, int t);
 
   int corners_per_item_;
+  bool still_ = false;
   std::vector<Index> order_;    // slot -> item
   std::vector<Index> corners_;  // by slot
   std::vector<CornerGroup> corner_groups_;

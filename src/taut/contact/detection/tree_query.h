@@ -25,7 +25,7 @@ template <int first_corners, int second_corners, class Pair, class MakePair>
 class TreeQuery {
  public:
   TreeQuery(const BoxTree& first, const BoxTree& second, std::span<const std::uint8_t> moved, const MakePair& make_pair)
-      : first_(first), second_(second), itself_(&first == &second), make_pair_(make_pair) {
+      : first_(first), second_(second), itself_(&first == &second), still_(first.still()), make_pair_(make_pair) {
     if (moved.empty()) return;
     moved_second_ = second.any_moved(moved);
     moved_first_ = itself_ ? moved_second_ : first.any_moved(moved);
@@ -35,7 +35,7 @@ class TreeQuery {
   void run(Index q, std::vector<Pair>& pairs) const {
     const bool all_solid = first_.solid(1, q / 8) >> (q % 8) & 1;
     const bool none_moved = restricted() && moved_first_[0][q] == 0;
-    const Box around = box_of_lane(first_.group(1, q / 8), q % 8);
+    const MovingBox around = box_of_lane(first_.group(1, q / 8), q % 8);
     struct Visit {
       int level;
       Index group;
@@ -45,7 +45,7 @@ class TreeQuery {
     stack[depth++] = {second_.height() - 1, 0};
     while (depth > 0) {
       const Visit visit = stack[--depth];
-      Mask mask = overlapping(second_.group(visit.level, visit.group), around);
+      Mask mask = overlapping(second_.group(visit.level, visit.group), around, still_);
       if (all_solid) mask &= ~second_.solid(visit.level, visit.group);
       if (none_moved) mask &= moved_second_[visit.level][visit.group];
       if (itself_) {
@@ -61,7 +61,7 @@ class TreeQuery {
         if (visit.level > 1)
           stack[depth++] = {visit.level - 1, below};
         else
-          meet(q, below, overlapping(first_.group(0, q), box_of_lane(second_.group(1, visit.group), lane)), pairs);
+          meet(q, below, overlapping(first_.group(0, q), box_of_lane(second_.group(1, visit.group), lane), still_), pairs);
       }
     }
   }
@@ -75,7 +75,7 @@ class TreeQuery {
     const BoxGroup& theirs = second_.group(0, g);
     for (; lanes != 0; lanes &= lanes - 1) {
       const int lane = std::countr_zero(lanes);
-      Mask mask = overlapping(theirs, box_of_lane(mine, lane));
+      Mask mask = overlapping(theirs, box_of_lane(mine, lane), still_);
       if (itself_ && q == g) mask &= ~1u << lane;
       if (first_.solid(0, q) >> lane & 1) mask &= ~second_.solid(0, g);
       if (restricted() && !(moved_first_[0][q] >> lane & 1)) mask &= moved_second_[0][g];
@@ -96,7 +96,7 @@ class TreeQuery {
 
   const BoxTree& first_;
   const BoxTree& second_;
-  bool itself_;
+  bool itself_, still_;
   const MakePair& make_pair_;
   LevelMasks moved_first_, moved_second_;
 };

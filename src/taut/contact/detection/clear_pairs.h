@@ -1,0 +1,29 @@
+#pragma once
+// Which of many pairs a plane surely keeps apart, cheaply: most pairs of the broad phase are neighbours in a smooth piece of cloth, and
+// need no closest points.
+//
+//   corners    of a pair: vertex p, then a, b, c of the triangle; or a, b of the first edge, then c, d of the second
+//   distance   m
+//
+// Tried are planes across the line between the middles of the two shapes; across that line's part orthogonal to an edge; and across the
+// normal of the triangle, of both edges. All are of the mean of start and end. A plane counts when it leaves more than `distance` between
+// the shapes at the start, or at both ends: and then, since all motion is linear, all the way. Rounding is bounded as in contact/ccd.h:
+// what is called clear is proved; the reverse does not hold. Numbers that are not finite are not clear.
+//
+// Four pairs side by side, each by itself: the result does not depend on which come together. Private to contact.
+
+#include <array>
+#include <cstdint>
+
+#include "taut/base/types.h"
+
+namespace taut::detail {
+
+using PairCorners = std::array<Index, 4>;
+
+constexpr std::uint8_t clear_at_start = 1, clear_throughout = 2;
+
+// clear[k]: the flags of pair k. x0, x1: m, of all vertices, at the start and at the end.
+void find_clear(const PairCorners* pairs, Index count, bool edges, const Vec3* x0, const Vec3* x1, double distance, std::uint8_t* clear);
+
+}  // namespace taut::detail

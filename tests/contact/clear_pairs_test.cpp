@@ -1,0 +1,144 @@
+#include "taut/contact/detection/clear_pairs.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <limits>
+#include <random>
+
+#include "moving_pairs.h"
+#include "taut/contact/collision_pair.h"
+#include "taut/mesh/grid.h"
+#include "triangle_soups.h"
+
+namespace taut {
+
+namespace {
+
+using detail::PairCorners;
+using test::Corners;
+using test::PairKind;
+
+constexpr PairKind kinds[] = {PairKind::vertex_triangle, PairKind::edge_edge};
+
+std::vector<std::uint8_t> flags_of(PairKind kind, const std::vector<Corners>& pairs, double distance) {
+  std::vector<Vec3> x0, x1;
+  std::vector<PairCorners> corners;
+  for (const Corners& x : pairs) {
+    const Index first = static_cast<Index>(x0.size());
+    corners.push_back({first, first + 1, first + 2, first + 3});
+    x0.insert(x0.end(), x.begin(), x.begin() + 4);
+    x1.insert(x1.end(), x.begin() + 4, x.end());
+  }
+  std::vector<std::uint8_t> flags(pairs.size(), 255);
+  detail::find_clear(corners.data(), static_cast<Index>(pairs.size()), kind == PairKind::edge_edge, x0.data(), x1.data(), distance,
+                     flags.data());
+  return flags;
+}
+
+Corners random_pair(std::mt19937& random, double apart, double motion) {
+  Corners x;
+  const Vec3 shift = test::anywhere(random, apart);
+  for (int k = 0; k < 4; ++k) {
+    x[k] = test::anywhere(random, 1.0) + (k < 2 ? shift : Vec3(Vec3::Zero()));
+    x[k + 4] = x[k] + test::anywhere(random, motion);
+  }
+  return x;
+}
+
+}  // namespace
+
+TEST(ClearPairs, AreFurtherApartAllTheTime) {
+  std::mt19937 random(1);
+  for (const PairKind kind : kinds)
+    for (const double motion : {0.0, 0.1, 1.0}) {
+      std::vector<Corners> pairs;
+      for (int k = 0; k < 1001; ++k) pairs.push_back(random_pair(random, 1.5, motion));  // not a multiple of four
+      constexpr double distance = 0.2;
+      const std::vector<std::uint8_t> flags = flags_of(kind, pairs, distance);
+      int clear = 0;
+      for (std::size_t k = 0; k < pairs.size(); ++k) {
+        ASSERT_LT(flags[k], 4);
+        if (flags[k] & detail::clear_at_start) EXPECT_GT(test::distance_at(kind, pairs[k], 0), distance);
+        if (!(flags[k] & detail::clear_throughout)) continue;
+        ++clear;
+        for (int t = 0; t <= 32; ++t) EXPECT_GT(test::distance_at(kind, pairs[k], t / 32.0L), distance) << k;
+      }
+      EXPECT_GT(clear, 100) << motion;
+    }
+}
+
+// Vertices on a face, edges that cross: exactly `gap` apart at one end, in numbers that are exact. Turned and scaled by powers of two and
+// swapped axes, they stay so.
+TEST(ClearPairs, NoneIsClearOfTheDistanceItHas) {
+  std::mt19937 random(2);
+  std::uniform_int_distribution<int> any(-8, 8), exponent(-40, 40);
+  for (const PairKind kind : kinds)
+    for (int trial = 0; trial < 3000; ++trial) {
+      const double scale = std::ldexp(1.0, exponent(random)), gap = scale * std::abs(any(random));
+      const auto flat = [&](double z) { return Vec3(scale * any(random), scale * any(random), z); };
+      Corners x;
+      if (kind == PairKind::vertex_triangle) {
+        x = {Vec3(0, 0, gap), flat(0), flat(0), Vec3::Zero()};
+        x[3] = -x[1] - x[2];  // the vertex is above the centroid
+      } else {
+        x = {flat(gap), Vec3::Zero(), flat(0), Vec3::Zero()};
+        x[1] = Vec3(-x[0][0], -x[0][1], gap);
+        x[3] = -x[2];
+      }
+      const bool touch_at_end = any(random) > 0;
+      for (int k = 0; k < 4; ++k) x[k + 4] = x[k];
+      // At the other end the first shape is further off.
+      for (int k = 0; k < (kind == PairKind::vertex_triangle ? 1 : 2); ++k) x[k + (touch_at_end ? 0 : 4)][2] += 5.0 * scale;
+      const int turn = any(random) & 1;
+      for (Vec3& corner : x)
+        if (turn) corner = Vec3(corner[1], corner[2], corner[0]);
+      EXPECT_FALSE(flags_of(kind, {x}, gap)[0] & detail::clear_throughout);
+      if (!touch_at_end) EXPECT_FALSE(flags_of(kind, {x}, gap)[0] & detail::clear_at_start);
+    }
+}
+
+TEST(ClearPairs, NumbersThatAreNotFiniteAreNotClear) {
+  std::mt19937 random(3);
+  for (const PairKind kind : kinds)
+    for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e200})
+      for (int corner = 0; corner < 8; ++corner) {
+        Corners x = random_pair(random, 0.0, 0.1);
+        for (int k = 0; k < 2; ++k) x[k][0] += 100.0, x[k + 4][0] += 100.0;  // far apart without the bad number
+        if (std::isfinite(bad)) x[0] = x[4] = x[2] = x[6];                   // huge, and touching
+        x[corner][1] = bad;
+        if (!std::isfinite(bad)) EXPECT_FALSE(flags_of(kind, {x}, 0.1)[0] & detail::clear_throughout);
+      }
+  Corners tiny;
+  for (Vec3& corner : tiny) corner = test::anywhere(random, 1e-160);
+  for (const PairKind kind : kinds) EXPECT_EQ(flags_of(kind, {tiny}, 1e-150)[0], 0);
+}
+
+// What it is for: neighbours in smooth cloth need no closest points.
+TEST(ClearPairs, NeighboursInASmoothSheetAreClear) {
+  TriangleMesh sheet = make_grid({20, 20});
+  const Mat3 turn = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  for (Vec3& x : sheet.positions) x = turn * Vec3(x[0], x[1], x[2] + 0.2 * x[0] * x[0] + 0.1 * x[1] * x[0]);
+  const SurfacePart part{static_cast<Index>(sheet.positions.size()), sheet.triangles, false};
+  const CollisionSurface surface = join_surfaces({&part, 1});
+  BroadPhase broad_phase(surface, sheet.positions);
+  const double distance = 0.1 / 19;
+  broad_phase.refit(sheet.positions, sheet.positions, distance);
+  const auto share_clear = [&](const auto& pairs, bool edges) {
+    std::vector<PairCorners> corners;
+    for (const auto& pair : pairs) corners.push_back(pair_of(surface, pair).node);
+    std::vector<std::uint8_t> flags(corners.size());
+    detail::find_clear(corners.data(), static_cast<Index>(corners.size()), edges, sheet.positions.data(), sheet.positions.data(), distance,
+                       flags.data());
+    EXPECT_GT(corners.size(), 100u);
+    return static_cast<double>(std::ranges::count(flags, detail::clear_at_start | detail::clear_throughout)) / double(flags.size());
+  };
+  std::vector<VertexTriangle> vertex_triangle;
+  std::vector<EdgeEdge> edge_edge;
+  broad_phase.find_vertex_triangle(vertex_triangle);
+  broad_phase.find_edge_edge(edge_edge);
+  EXPECT_GT(share_clear(vertex_triangle, false), 0.99);
+  EXPECT_GT(share_clear(edge_edge, true), 0.97);
+}
+
+}  // namespace taut
