@@ -39,6 +39,7 @@ export interface SceneInfo {
   triangles: number;
   springs: number;
   uv: boolean;
+  contact: boolean; // every frame has been recorded with what touches each node
   frame_s: number;
   frames_expected: number | null;
   cloths: ClothInfo[];
@@ -66,6 +67,8 @@ export const readRestLengths = async () => new Float32Array(await bytes('rest_le
 export const readSolidTriangles = async (solid: number) => new Uint32Array(await bytes(`solid_triangles?solid=${solid}`));
 export const readSolidPoints = async (solid: number) => new Float32Array(await bytes(`solid_points?solid=${solid}`));
 export const readFrames = (first: number, count: number) => bytes(`frames?first=${first}&count=${count}`);
+
+export const readContact = (first: number, count: number) => bytes(`contact?first=${first}&count=${count}`);
 
 // The rows from a byte on, and which file they are of.
 export async function readStats(from: number): Promise<{ text: string; bytes: number; file: string }> {

@@ -39,7 +39,7 @@ export function niceCeiling(value: number): number {
 
 // The p-th part of the values in order, 0 to 1; NaN of none.
 export function quantile(values: ArrayLike<number>, p: number): number {
-  const sorted = Float64Array.from(values).filter(Number.isFinite).sort();
+  const sorted = Float32Array.from(values).filter(Number.isFinite).sort();
   return sorted.length ? sorted[Math.min(sorted.length - 1, Math.floor(p * sorted.length))] : NaN;
 }
 

@@ -1,3 +1,4 @@
+import { kindField } from './contact_kinds';
 import { gapField, speedField, stretchField } from './fields';
 import type { SceneInfo } from './api';
 import { niceCeiling, quantile } from './colour_map';
@@ -16,6 +17,13 @@ export interface Scale {
   factor: number; // from the field's SI unit to the one shown
   reversed: boolean; // low values bright
   high: number; // SI; low is 0
+  kinds: boolean; // no numbers but those of contact_kinds.ts
+}
+
+// Frames that are in memory.
+export interface Frames {
+  positions(frame: number): Float32Array | undefined;
+  contact(frame: number): Uint8Array | undefined; // bits, where the run has recorded them
 }
 
 // 10 mm: where cloth that nears a solid begins to be told from the rest.
@@ -34,22 +42,26 @@ export class Colouring {
 
   available(mode: Mode): string | null {
     if (mode === 'stretch' && this.scene.springs === 0) return 'This result does not say where its springs are';
-    if (mode === 'contact' && !this.scene.solids.some((solid) => solid.shape !== 'unknown' && solid.shape !== 'mesh')) return 'There is no solid whose distance is known';
+    if (mode === 'contact' && !this.scene.contact && !this.scene.solids.some((solid) => solid.shape !== 'unknown' && solid.shape !== 'mesh')) return 'There is no solid whose distance is known';
     return null;
   }
 
   // False when what is needed is not there yet; then `out` is as it was.
-  fill(mode: Mode, frame: number, get: (frame: number) => Float32Array | undefined, out: Float32Array): boolean {
-    const positions = get(frame);
+  fill(mode: Mode, frame: number, frames: Frames, out: Float32Array): boolean {
+    const positions = frames.positions(frame);
     if (!positions) return false;
-    if (mode === 'contact') {
+    if (mode === 'contact' && this.scene.contact) {
+      const bits = frames.contact(frame);
+      if (!bits) return false;
+      kindField(bits, out);
+    } else if (mode === 'contact') {
       gapField(positions, this.scene.solids, frame, out);
     } else if (mode === 'stretch') {
       if (!this.springs) return false;
       stretchField(positions, this.springs.ends, this.springs.restLengths, out);
     } else if (mode === 'speed') {
       // Since the frame before; at the start until the next.
-      const other = get(frame === 0 ? 1 : frame - 1);
+      const other = frames.positions(frame === 0 ? 1 : frame - 1);
       if (!other) return false;
       speedField(other, positions, this.scene.frame_s, out);
     }
@@ -71,14 +83,17 @@ export class Colouring {
 
   scale(mode: Mode): Scale {
     const high = this.highs[mode] ?? 1;
-    if (mode === 'stretch') return { title: 'Stretch: largest L/L₀ − 1 at a node', unit: '%', factor: 100, reversed: false, high };
-    if (mode === 'speed') return { title: 'Speed', unit: 'm/s', factor: 1, reversed: false, high };
-    return { title: 'Distance to the nearest solid', unit: 'mm', factor: 1000, reversed: true, high };
+    if (mode === 'stretch') return { title: 'Stretch: largest L/L₀ − 1 at a node', unit: '%', factor: 100, reversed: false, high, kinds: false };
+    if (mode === 'speed') return { title: 'Speed', unit: 'm/s', factor: 1, reversed: false, high, kinds: false };
+    if (this.scene.contact) return { title: 'Touched by', unit: '', factor: 1, reversed: false, high: 1, kinds: true };
+    return { title: 'Distance to the nearest solid', unit: 'mm', factor: 1000, reversed: true, high, kinds: false };
   }
 }
 
 // Enough for a quantile, in little time.
 function sample(field: Float32Array): Float32Array {
-  const stride = Math.max(1, Math.floor(field.length / 5000));
-  return field.filter((_, k) => k % stride === 0);
+  const stride = Math.max(1, Math.floor(field.length / 2000));
+  const taken = new Float32Array(Math.ceil(field.length / stride));
+  for (let k = 0; k < taken.length; ++k) taken[k] = field[k * stride];
+  return taken;
 }

@@ -28,13 +28,11 @@ export function surplus(frames: Iterable<number>, playhead: number, total: numbe
   return order.slice(most);
 }
 
-// Frames of `nodes` nodes, one after the other.
-export function splitFrames(buffer: ArrayBuffer, nodes: number): Float32Array[] {
-  const numbers = 3 * nodes;
-  const all = new Float32Array(buffer);
-  if (numbers === 0 || all.length % numbers !== 0) throw new RangeError(`${all.length} numbers are no whole frames of ${nodes} nodes`);
-  const frames: Float32Array[] = [];
+// Frames of so many bytes, one after the other.
+export function splitFrames(buffer: ArrayBuffer, frameBytes: number): ArrayBuffer[] {
+  if (frameBytes === 0 || buffer.byteLength % frameBytes !== 0) throw new RangeError(`${buffer.byteLength} bytes are no whole frames of ${frameBytes}`);
+  const frames: ArrayBuffer[] = [];
   // Copied: a view would keep all others in memory with it.
-  for (let at = 0; at < all.length; at += numbers) frames.push(all.slice(at, at + numbers));
+  for (let at = 0; at < buffer.byteLength; at += frameBytes) frames.push(buffer.slice(at, at + frameBytes));
   return frames;
 }

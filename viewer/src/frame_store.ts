@@ -1,4 +1,4 @@
-import { readFrames, ServerError } from './api';
+import { ServerError } from './api';
 import { nextRequest, splitFrames, surplus } from './frame_plan';
 import { RetryList } from './retry_list';
 
@@ -7,8 +7,8 @@ const chunkBytes = 8 * 2 ** 20;
 const mostRequests = 2;
 
 // The frames that are in memory: fetched ahead of the playhead, those played last let go when memory is used up.
-export class FrameStore {
-  private frames = new Map<number, Float32Array>();
+export class FrameStore<T> {
+  private frames = new Map<number, T>();
   private asked = new Set<number>();
   private requests = 0;
   private readonly retries = new RetryList();
@@ -19,16 +19,16 @@ export class FrameStore {
   playhead = 0;
 
   constructor(
-    private readonly nodes: number,
+    private readonly source: { frameBytes: number; read: (first: number, count: number) => Promise<ArrayBuffer>; view: (frame: ArrayBuffer) => T },
     private readonly onArrival: () => void,
     private readonly onTrouble: (message: string) => void,
   ) {
-    const frameBytes = 12 * nodes;
+    const { frameBytes } = source;
     this.most = Math.max(4, Math.floor(mostBytes / frameBytes));
     this.chunk = Math.max(1, Math.floor(chunkBytes / frameBytes));
   }
 
-  get(frame: number): Float32Array | undefined {
+  get(frame: number): T | undefined {
     return this.frames.get(frame);
   }
 
@@ -39,9 +39,14 @@ export class FrameStore {
 
   // A resumed run begins anew after its checkpoint: frames from `total` on are other ones when they come again.
   setTotal(total: number) {
-    if (total < this.total) for (const frame of [...this.frames.keys()]) if (frame >= total) this.frames.delete(frame);
+    this.forgetFrom(total);
     this.total = total;
     this.fetchMore();
+  }
+
+  forgetFrom(total: number) {
+    if (total < this.total) for (const frame of [...this.frames.keys()]) if (frame >= total) this.frames.delete(frame);
+    this.total = Math.min(this.total, total);
   }
 
   moveTo(playhead: number) {
@@ -68,9 +73,10 @@ export class FrameStore {
     ++this.requests;
     for (let frame = first; frame < first + count; ++frame) this.asked.add(frame);
     try {
-      const arrived = splitFrames(await readFrames(first, count), this.nodes);
+      const { read, view, frameBytes } = this.source;
+      const arrived = splitFrames(await read(first, count), frameBytes).map(view);
       if (this.closed) return;
-      arrived.forEach((positions, k) => this.frames.set(first + k, positions));
+      arrived.forEach((frame, k) => this.frames.set(first + k, frame));
       this.retries.succeeded(first, count);
       for (const frame of surplus(this.frames.keys(), this.playhead, this.total, this.most)) this.frames.delete(frame);
       this.onArrival();

@@ -11,6 +11,7 @@ import { Session } from './session';
 import { Stage } from './stage';
 import { StatsFollower } from './stats';
 import { emptyMessage, statusChip, type Trouble } from './status';
+import { wantedTimings } from './timings';
 
 const element = <T extends HTMLElement = HTMLElement>(id: string) => document.getElementById(id) as T;
 const button = (id: string) => element<HTMLButtonElement>(id);
@@ -276,16 +277,22 @@ async function watch() {
   }
 }
 
+const timings = wantedTimings();
 let last = performance.now();
 function tick(now: number) {
   const seconds = (now - last) / 1000;
   last = now;
+  const begin = performance.now();
+  let moved = false;
   if (session) {
     const playing = session.clock.playing;
-    if (session.tick(seconds, isRunning())) showFrame();
+    moved = session.tick(seconds, isRunning());
+    if (moved) showFrame();
     if (playing !== session.clock.playing) showPlayButton();
   }
+  const drawing = performance.now();
   stage.draw();
+  if (moved) timings?.note(drawing - begin, performance.now() - drawing);
   requestAnimationFrame(tick);
 }
 

@@ -148,7 +148,7 @@ class PlotView {
 
   setData(table: StatsTable) {
     this.chart.setData(this.data(table));
-    this.setTime(this.time, table);
+    queueMicrotask(() => this.setTime(this.time, table));
   }
 
   setTime(time: number, table: StatsTable) {
@@ -163,7 +163,7 @@ class PlotView {
 
   setWidth(width: number, table: StatsTable) {
     this.chart.setSize({ width, height: this.chart.height });
-    this.setTime(this.time, table);
+    queueMicrotask(() => this.setTime(this.time, table));
   }
 
   destroy() {
@@ -213,7 +213,8 @@ export class PlotPanel {
     }
     const width = this.width();
     this.views = plots.map((plot, k) => new PlotView(this.holder, plot, table, width, this.lastTime, k === plots.length - 1, (time) => this.jump(time)));
-    this.setTime(this.time);
+    // uPlot lays itself out a microtask later; before, no time has a place.
+    queueMicrotask(() => this.setTime(this.time));
   }
 
   setTime(time: number) {

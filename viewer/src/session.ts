@@ -1,5 +1,5 @@
 import * as THREE from 'three';
-import { readRestLengths, readScene, readSprings, readTriangles, readUv, type SceneInfo } from './api';
+import { readContact, readFrames, readRestLengths, readScene, readSprings, readTriangles, readUv, type SceneInfo } from './api';
 import { ClothView } from './cloth_view';
 import { Clock } from './clock';
 import { Colouring, type Mode } from './colouring';
@@ -12,7 +12,8 @@ import type { Stage } from './stage';
 export class Session {
   readonly clock: Clock;
   readonly colouring: Colouring;
-  private readonly store: FrameStore;
+  private readonly store: FrameStore<Float32Array>;
+  private readonly contact: FrameStore<Uint8Array>; // fetched only while it is looked at
   private readonly cloth: ClothView;
   private readonly solids: SolidsView;
   private bounds = new THREE.Box3();
@@ -37,12 +38,11 @@ export class Session {
   ) {
     this.clock = new Clock(scene.frame_s);
     this.colouring = new Colouring(scene);
-    this.store = new FrameStore(
-      scene.nodes,
-      () => (this.outdated = true),
-      (message) => this.onTrouble(message),
-    );
-    this.cloth = new ClothView(scene, triangles, uv);
+    const arrived = () => (this.outdated = true);
+    const trouble = (message: string) => this.onTrouble(message);
+    this.store = new FrameStore({ frameBytes: 12 * scene.nodes, read: readFrames, view: (frame) => new Float32Array(frame) }, arrived, trouble);
+    this.contact = new FrameStore({ frameBytes: scene.nodes, read: readContact, view: (frame) => new Uint8Array(frame) }, arrived, trouble);
+    this.cloth = new ClothView(scene, triangles, uv, stage.quality);
     this.solids = new SolidsView(scene.solids);
     stage.scene.add(this.cloth.mesh, this.solids.group);
     this.setPalette(palette);
@@ -50,6 +50,10 @@ export class Session {
       () => (this.outdated = true),
       (error) => this.onTrouble(`Solids that are meshes are not drawn: ${error.message}`),
     );
+  }
+
+  private get needsContact(): boolean {
+    return this.mode === 'contact' && this.scene.contact;
   }
 
   get frames(): number {
@@ -66,6 +70,8 @@ export class Session {
 
   setTotal(total: number) {
     this.store.setTotal(total);
+    if (this.needsContact) this.contact.setTotal(total);
+    else this.contact.forgetFrom(total);
     if (this.clock.frame >= total) this.clock.jump(total - 1);
   }
 
@@ -84,6 +90,7 @@ export class Session {
     this.mode = mode;
     this.outdated = true;
     this.solids.setTranslucent(mode === 'contact');
+    if (this.needsContact) this.contact.setTotal(this.store.total);
     if (mode === 'cloth') this.cloth.hideField();
     if (mode === 'stretch' && !this.colouring.springs && this.scene.springs > 0) {
       const [ends, restLengths] = await Promise.all([readSprings(), readRestLengths()]);
@@ -101,6 +108,7 @@ export class Session {
   tick(seconds: number, more: boolean): boolean {
     const wanted = this.clock.advance(seconds, this.store.total, more, (frame) => this.isThere(frame));
     this.store.moveTo(wanted);
+    if (this.needsContact) this.contact.moveTo(wanted);
     const moved = wanted !== this.shown;
     if (!moved && !this.outdated) return false;
     const positions = this.store.get(wanted);
@@ -119,13 +127,15 @@ export class Session {
   private colour() {
     if (this.mode === 'cloth') return;
     const field = this.cloth.field;
-    if (!this.colouring.fill(this.mode, this.shown, (frame) => this.store.get(frame), field)) {
+    const frames = { positions: (frame: number) => this.store.get(frame), contact: (frame: number) => this.contact.get(frame) };
+    if (!this.colouring.fill(this.mode, this.shown, frames, field)) {
       this.outdated = true;
       return;
     }
     this.colouring.updateScale(this.mode, field);
-    const { high, reversed } = this.colouring.scale(this.mode);
-    this.cloth.showField(0, high, reversed);
+    const { high, reversed, kinds } = this.colouring.scale(this.mode);
+    if (kinds) this.cloth.showKinds();
+    else this.cloth.showField(0, high, reversed);
     this.onScale();
   }
 
@@ -152,6 +162,7 @@ export class Session {
 
   close() {
     this.store.close();
+    this.contact.close();
     this.stage.scene.remove(this.cloth.mesh, this.solids.group);
     this.cloth.dispose();
     this.solids.dispose();

@@ -38,7 +38,7 @@ function showSample(solid: MeshSolid, frame: number) {
 export class SolidsView {
   readonly group = new THREE.Group();
   private readonly material = new THREE.MeshStandardMaterial({ roughness: 0.6 });
-  private readonly planeMaterial = new THREE.MeshStandardMaterial({ roughness: 0.95, side: THREE.DoubleSide });
+  private readonly planeMaterial = new THREE.MeshStandardMaterial({ roughness: 0.95 });
   private readonly drawn: { solid: SolidInfo; mesh: THREE.Mesh }[] = [];
 
   private readonly meshes: MeshSolid[] = [];

@@ -2,17 +2,81 @@ import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import type { Palette } from './palette';
 import type { Quality } from './quality';
+import { Resolution } from './soft/resolution';
+import { SoftRenderer } from './soft/soft_renderer';
 
 const viewDirection = new THREE.Vector3(0.75, -1.35, 0.65).normalize();
 const lightDirection = new THREE.Vector3(0.35, -0.5, 1).normalize();
 
+// What draws the scene into the canvas. `still`: nothing moves, so that it may take its time.
+interface Painter {
+  setSize(width: number, height: number): void;
+  setBackground(top: string, bottom: string): void;
+  paint(scene: THREE.Scene, camera: THREE.PerspectiveCamera, still: boolean): void;
+}
+
+class GraphicsPainter implements Painter {
+  private readonly renderer: THREE.WebGLRenderer;
+
+  constructor(canvas: HTMLCanvasElement) {
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true });
+    this.renderer.setClearAlpha(0);
+    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+    this.renderer.shadowMap.enabled = true;
+    this.renderer.shadowMap.type = THREE.PCFShadowMap;
+  }
+
+  setSize(width: number, height: number) {
+    this.renderer.setSize(width, height, false);
+  }
+
+  // The page's own shines through.
+  setBackground() {}
+
+  paint(scene: THREE.Scene, camera: THREE.PerspectiveCamera) {
+    this.renderer.render(scene, camera);
+  }
+}
+
+class ProcessorPainter implements Painter {
+  private readonly renderer: SoftRenderer;
+  private readonly resolution = new Resolution();
+  private width = 1;
+  private height = 1;
+
+  constructor(canvas: HTMLCanvasElement) {
+    this.renderer = new SoftRenderer(canvas);
+  }
+
+  setBackground(top: string, bottom: string) {
+    this.renderer.setBackground(top, bottom);
+  }
+
+  setSize(width: number, height: number) {
+    this.width = width;
+    this.height = height;
+  }
+
+  paint(scene: THREE.Scene, camera: THREE.PerspectiveCamera, still: boolean) {
+    const begin = performance.now();
+    const dots = Math.min(window.devicePixelRatio, 2);
+    const scale = still ? dots : this.resolution.scale;
+    const size = (length: number) => Math.max(1, Math.round(scale * length));
+    this.renderer.render(scene, camera, size(this.width), size(this.height), still && dots < 2);
+    if (!still) this.resolution.note(performance.now() - begin);
+  }
+}
+
+// A picture drawn in haste is drawn anew, finely, when nothing has moved for this long, ms.
+const stillAfter = 200;
+
 // Camera, lights and ground. It draws only when something has changed. z is up.
 export class Stage {
   readonly scene = new THREE.Scene();
-  private readonly renderer: THREE.WebGLRenderer;
+  private readonly painter: Painter;
   private readonly camera = new THREE.PerspectiveCamera(32, 1, 0.01, 100);
   private readonly controls: OrbitControls;
-  private readonly sky = new THREE.HemisphereLight(0xffffff, 0xb0aaa0, 2.0);
+  private readonly sky = new THREE.HemisphereLight(0xffffff, 0xb0aaa0, 1.6);
   private readonly key = new THREE.DirectionalLight(0xffffff, 1.9);
   private readonly head = new THREE.DirectionalLight(0xffffff, 0.6);
   private readonly ground: THREE.Mesh<THREE.PlaneGeometry, THREE.ShadowMaterial>;
@@ -21,18 +85,17 @@ export class Stage {
   private groundShown = true;
   private size = 1;
   private dirty = true;
+  private readonly needsSecondLook: boolean;
+  private hastyAt = -1; // when the picture was drawn that is still to be drawn finely; -1: none
 
   constructor(
     private readonly holder: HTMLElement,
     canvas: HTMLCanvasElement,
-    quality: Quality,
+    readonly quality: Quality,
   ) {
-    const fine = quality === 'high';
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: fine, alpha: true });
-    this.renderer.setClearAlpha(0);
-    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
-    this.renderer.shadowMap.enabled = fine;
-    this.renderer.shadowMap.type = THREE.PCFShadowMap;
+    this.painter = quality === 'high' ? new GraphicsPainter(canvas) : new ProcessorPainter(canvas);
+    this.needsSecondLook = quality === 'low';
+    this.sky.position.set(0, 0, 1);
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.addEventListener('change', () => this.invalidate());
@@ -52,6 +115,8 @@ export class Stage {
   }
 
   setPalette(palette: Palette) {
+    const style = getComputedStyle(this.holder);
+    this.painter.setBackground(style.getPropertyValue('--sky-top').trim(), style.getPropertyValue('--sky-bottom').trim());
     this.sky.color.setHex(palette.skyLight);
     this.sky.groundColor.setHex(palette.floorLight);
     this.ground.material.opacity = palette.shadow;
@@ -96,9 +161,13 @@ export class Stage {
   }
 
   draw() {
-    if (!this.dirty) return;
+    const now = performance.now();
+    const still = !this.dirty && this.hastyAt >= 0 && now - this.hastyAt > stillAfter;
+    if (!this.dirty && !still) return;
     this.dirty = false;
-    this.renderer.render(this.scene, this.camera);
+    this.painter.paint(this.scene, this.camera, still);
+    this.hastyAt = still || !this.needsSecondLook ? -1 : now;
+    this.holder.dataset.picture = this.hastyAt < 0 ? 'fine' : 'hasty';
   }
 
   private makeGrid() {
@@ -122,7 +191,7 @@ export class Stage {
   private fit() {
     const { clientWidth, clientHeight } = this.holder;
     if (clientWidth === 0 || clientHeight === 0) return;
-    this.renderer.setSize(clientWidth, clientHeight, false);
+    this.painter.setSize(clientWidth, clientHeight);
     this.camera.aspect = clientWidth / clientHeight;
     this.camera.updateProjectionMatrix();
     this.dirty = true;

@@ -37,13 +37,15 @@ function findBrowser() {
   return null;
 }
 
-export async function startBrowser() {
+// By WebGL that the processor imitates, the same on every machine; without: as the browser draws by itself.
+export const imitated = ['--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist'];
+
+export async function startBrowser(graphics = imitated) {
   const executablePath = findBrowser();
   if (!executablePath) skip('there is no Chromium here (Debian: chromium)');
   const playwright = await import('playwright-core').catch(() => skip('playwright-core is not installed: npm ci in viewer/'));
   const args = ['--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync', '--disable-extensions'];
-  // Graphics by the processor, the same on every machine.
-  args.push('--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist');
+  args.push(...graphics);
   return playwright.chromium.launch({ executablePath, args, chromiumSandbox: process.getuid?.() !== 0 });
 }
 
@@ -165,6 +167,8 @@ export const waitForStatus = (page, text) => page.waitForFunction((wanted) => do
 // The stage as pixels, after what was changed has been drawn.
 export async function stagePicture(page, keepAs) {
   await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => requestAnimationFrame(done)))));
+  // Of a stage that is played or grows there may never be a fine one.
+  await page.waitForFunction(() => document.querySelector('#stage').dataset.picture !== 'hasty', null, { timeout: 1500 }).catch(() => {});
   return decodePng(await page.locator('#stage').screenshot(keepAs ? { path: keepAs } : {}));
 }
 
