@@ -20,6 +20,7 @@ constexpr const char* names[] = {auto_core_method, auto_core_method, "upcg:proje
 constexpr double shortest_patience = 16, longest_patience = 256;  // solves
 constexpr double bar_after_failure = 64;                          // solves
 constexpr int least_trial = 3;                                    // iterations a method has to show what it can
+constexpr double block_diagonal_share = 0.25;                     // of the iterations that its condition allows, at least
 constexpr double give_up_at = 2.0;                                // times the work of corePCG
 constexpr double core_condition = 18.0;                           // 2 (1 + ρ) where ρ is not known: that of the chosen core
 constexpr double loosest = 3.0;                                   // times the error that corePCG may leave
@@ -102,7 +103,15 @@ AutoSolver::Method AutoSolver::choose(const SystemSize& size) const {
   return best;
 }
 
-AutoSolver::Method AutoSolver::rival_of(Method chosen, const SystemSize& size) const {
+// Of a method that has not been tried.
+double AutoSolver::least_iterations(Method method, const Solve& solve) const {
+  if (method != block_diagonal) return least_trial;
+  const double condition = block_diagonal_condition(*solve.original.matrix);
+  return std::max<double>(least_trial, block_diagonal_share * 0.5 * std::sqrt(condition) * std::log(2.0 / options_.tolerance));
+}
+
+AutoSolver::Method AutoSolver::rival_of(Method chosen, const Solve& solve) const {
+  const SystemSize& size = solve.size;
   if (!tried(chosen)) return chosen;
   const double to_beat = expected_work(chosen, size);
   Method rival = chosen;
@@ -111,7 +120,7 @@ AutoSolver::Method AutoSolver::rival_of(Method chosen, const SystemSize& size) c
     const Method method = static_cast<Method>(m);
     if (method == chosen || !available(method, size) || records_[method].next_trial > solves_) continue;
     const MethodWork w = work(method, size);
-    const double hoped = method == direct ? w.setup : w.total(tried(method) ? 0.5 * records_[method].iterations : least_trial);
+    const double hoped = method == direct ? w.setup : w.total(tried(method) ? 0.5 * records_[method].iterations : least_iterations(method, solve));
     if (!tried(method) && hoped < to_beat) return method;
     if (hoped < least) rival = method, least = hoped;
   }
@@ -121,7 +130,7 @@ AutoSolver::Method AutoSolver::rival_of(Method chosen, const SystemSize& size) c
 void AutoSolver::run(const LinearSystem& system, std::span<double> x, SolveSummary& summary) {
   ++solves_;
   Solve solve{system, system, x, summary, size_of(system), true};
-  const Method chosen = choose(solve.size), rival = rival_of(chosen, solve.size);
+  const Method chosen = choose(solve.size), rival = rival_of(chosen, solve);
   if (rival != chosen) {
     const bool won = attempt(rival, budget(rival, solve.size, expected_work(chosen, solve.size)), solve) == Attempt::solved;
     note_trial(rival, won);
@@ -202,7 +211,10 @@ void AutoSolver::learn(Method method, const SolveSummary& s, const CgCoefficient
     r.condition = std::max(ends.smallest > 0.0 ? ends.largest / ends.smallest : r.condition, 0.7 * r.condition);
   }
   if (s.status.outcome == Outcome::max_iterations) {
-    r.iterations = std::max(r.iterations, 1.5 * s.iterations + 1.0);
+    // What it would have taken at this rate, but no more than a few times what was seen.
+    const double digits = std::log(s.start_value / s.stop_value), missing = std::log(s.stop_value / tolerance);
+    const double further = digits > 0.0 ? std::clamp(missing / digits, 0.5, 8.0) : 8.0;
+    r.iterations = std::max(r.iterations, (1.0 + further) * s.iterations + 1.0);
   } else if (solve.first || r.iterations < 0.0) {
     // What the next solve will need, if the tolerance for it is another by now.
     const double digits = std::log(2.0 / tolerance), next_digits = std::log(2.0 / tolerance_for(method, solve.original));

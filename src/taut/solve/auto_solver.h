@@ -14,7 +14,8 @@
 //
 // Choose: the least work, of the methods that have been tried. The first solve is corePCG's.
 //
-// Try another one now and then: first those never tried, one a solve; then such as would win with half their last iterations, after 16
+// Try another one now and then: first those never tried, one a solve, if three iterations would win (of the block diagonal: a quarter of what
+// its condition allows); then such as would win with half their last iterations, after 16
 // solves, and after twice as many each time they lose (at most 256). A trial that has cost as much as the chosen method would is given up.
 //
 // Give up a method without a bound when it has cost twice what corePCG would, corePCG itself at twice what the direct one would.
@@ -75,7 +76,8 @@ class AutoSolver : public ConstrainedSolver {
   bool tried(Method method) const { return records_[method].iterations >= 0.0; }
   Method choose(const SystemSize& size) const;
   // The rival to try, or `chosen` itself if none.
-  Method rival_of(Method chosen, const SystemSize& size) const;
+  Method rival_of(Method chosen, const Solve& solve) const;
+  double least_iterations(Method method, const Solve& solve) const;
   // Iterations of a method until it has cost `limit`.
   int budget(Method method, const SystemSize& size, double limit) const;
   double tolerance_for(Method method, const LinearSystem& system) const;

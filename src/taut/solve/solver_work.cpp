@@ -25,8 +25,8 @@ FactorSize estimate_factor(const SystemSize& size, double nonzeros) {
   const double n = std::max(2.0, size.nodes), area = std::pow(size.unknowns / n, 2);
   const double neighbours = nonzeros / (area * n) - 1.0;
   if (neighbours < 0.5) return {size.unknowns, size.unknowns};
-  const double width = neighbours > 8.5 ? 2.0 : 1.0;
-  return {2.2 * width * area * n * std::log2(n), 12.0 * std::pow(width, 3) * area * (size.unknowns / n) * std::pow(n, 1.5)};
+  const double width = neighbours / 4.0;
+  return {1.4 * std::pow(width, 1.12) * area * n * std::log2(n), 8.5 * std::pow(width, 1.75) * area * (size.unknowns / n) * std::pow(n, 1.5)};
 }
 
 namespace {
@@ -34,24 +34,29 @@ namespace {
 // Product with Ã, and the loop's dot products and updates.
 double loop_work(const SystemSize& size) { return work_rates.stream * (8.5 * size.nonzeros + (16.0 + 100.0) * size.unknowns); }
 
+double reduction_work(const SystemSize& size) { return work_rates.reduce * 8.0 * size.nonzeros; }
+
+double factor_solve_work(const SystemSize& size, const FactorSize& factor) {
+  return work_rates.factor_solve * factor.nonzeros + work_rates.factor_node * size.nodes;
+}
+
 }  // namespace
 
 MethodWork block_diagonal_work(const SystemSize& size) {
-  return {work_rates.stream * 60.0 * size.unknowns, loop_work(size) + work_rates.stream * 40.0 * size.unknowns};
+  return {reduction_work(size) + work_rates.stream * 60.0 * size.unknowns, loop_work(size) + work_rates.stream * 40.0 * size.unknowns};
 }
 
 MethodWork incomplete_work(const SystemSize& size, double nonzeros, double preparations) {
-  return {preparations * work_rates.incomplete_setup * 8.0 * nonzeros, loop_work(size) + work_rates.incomplete * 8.0 * nonzeros};
+  return {reduction_work(size) + preparations * work_rates.incomplete_setup * 8.0 * nonzeros,
+          loop_work(size) + work_rates.incomplete * 8.0 * nonzeros};
 }
 
 MethodWork core_work(const SystemSize& size, const FactorSize& factor) {
-  const double solve = work_rates.factor_solve * 2.0 * 8.0 * factor.nonzeros / work_rates.core_speed;
-  // Half a solve more than iterations: the stop test takes forward solves only, and the one for δ0 comes with the factorisation.
-  return {work_rates.factor * factor.flops / work_rates.core_speed + 0.5 * solve, loop_work(size) + solve};
+  return {0.5 * work_rates.factor * factor.flops + work_rates.factor_entry * factor.nonzeros, loop_work(size) + factor_solve_work(size, factor)};
 }
 
 MethodWork direct_work(const FactorSize& factor) {
-  return {work_rates.factor * factor.flops + work_rates.factor_solve * 2.0 * 8.0 * factor.nonzeros, 0.0};
+  return {work_rates.factor * factor.flops + (work_rates.factor_entry + work_rates.factor_solve) * factor.nonzeros, 0.0};
 }
 
 }  // namespace taut

@@ -2,7 +2,7 @@
 // What the methods cost, counted: the time of one solve on a machine with fixed rates, from the sizes of the system and of the factors.
 // Only the ratios of the rates matter, and they are constants: the same choice on every machine, every run.
 //
-//   setup            factorisation or other preparation; what all methods do alike (forming Ã) is left out
+//   setup            factorisation or other preparation, and forming Ã where a method needs it
 //   per_iteration    product, vector updates, preconditioner
 
 #include "taut/solve/linear_system.h"
@@ -12,12 +12,14 @@ namespace taut {
 // Taut's kernels relative to each other, seconds a byte and an operation; measured on two cores of an x86-64 server (AVX2), 6,561 and
 // 25,921 nodes (`taut bench roofline --threads 2`).
 struct WorkRates {
-  double stream = 1.0 / 20e9;             // products and vectors: bytes read and written
-  double incomplete = 1.0 / 8e9;          // IC(0)'s solves: bytes of the matrix it is made from; each row waits for the last
-  double incomplete_setup = 1.0 / 0.7e9;  // IC(0)'s factorisation: the same bytes
-  double factor = 1.0 / 28e9;             // Cholesky factorisation, operations
-  double factor_solve = 1.0 / 16e9;       // its triangular solves: bytes of the factor
-  double core_speed = 1.8;                // of the core's factor, in single precision, against the direct method's
+  double stream = 1.0 / 35e9;              // products and vectors: bytes read and written
+  double reduce = 1.0 / 3.4e9;             // forming Ã: its bytes
+  double incomplete = 1.0 / 11e9;          // IC(0)'s solves: bytes of the matrix it is made from; each row waits for the last
+  double incomplete_setup = 1.0 / 1.45e9;  // IC(0)'s factorisation: the same bytes
+  double factor = 1.0 / 95e9;              // Cholesky factorisation, operations; in single precision half of it
+  double factor_entry = 2.3e-9;            // ... and its entries: small fronts are moved more than multiplied
+  double factor_solve = 0.38e-9;           // its two triangular solves: entries of the factor ...
+  double factor_node = 58e-9;              // ... and nodes
 };
 inline constexpr WorkRates work_rates{};
 
@@ -38,8 +40,8 @@ struct FactorSize {
   double nonzeros = 0.0, flops = 0.0;
   bool known() const { return nonzeros > 0.0; }
 };
-// Nested dissection of a sheet whose matrix has this many nonzeros, fitted to grids with and without bend springs: separators of twice the
-// width where springs reach over two nodes.
+// Nested dissection of a sheet whose matrix has this many nonzeros, fitted to the cores of grids with 4 to 12 neighbours a node: the more
+// neighbours, the wider the separators.
 FactorSize estimate_factor(const SystemSize& size, double nonzeros);
 
 MethodWork block_diagonal_work(const SystemSize& size);
