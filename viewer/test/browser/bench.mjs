@@ -1,13 +1,13 @@
-// How fast a result is played:  node bench.mjs TAUT_PROGRAM WORK_FOLDER [NODES_A_SIDE [FRAMES]]   (npm run bench in viewer/)
+// How fast a result is played:  node bench.mjs TAUT_PROGRAM WORK_FOLDER [NODES_A_SIDE [FRAMES [WIDTH HEIGHT]]]   (npm run bench in viewer/)
 // A sheet with waves, 161 x 161 nodes unless told otherwise, 120 frames at 60 a second, in a headless Chromium without a graphics processor, in a
-// window of 1280 x 720.
+// window of 1280 x 720 unless told otherwise.
 import { spawnSync } from 'node:child_process';
 import { mkdirSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { openPage, skip, startBrowser, waitForFrame, Workshop } from './harness.mjs';
 
-const [program, folder, sideText, framesText] = process.argv.slice(2);
-const side = Number(sideText ?? 161), frames = Number(framesText ?? 120), nodes = side * side, seconds = 6;
+const [program, folder, sideText, framesText, widthText, heightText] = process.argv.slice(2);
+const side = Number(sideText ?? 161), frames = Number(framesText ?? 120), width = Number(widthText ?? 1280), height = Number(heightText ?? 720), nodes = side * side, seconds = 6;
 const shop = new Workshop(program, folder);
 
 function writeNpy(name, type, shape, numbers) {
@@ -76,7 +76,7 @@ async function countDisplayed(browser, during) {
 }
 
 async function measure(browser, address, key, name) {
-  const page = await openPage(browser, address + '?timings', { viewport: { width: 1280, height: 720 } });
+  const page = await openPage(browser, address + '?timings', { viewport: { width, height } });
   await page.waitForFunction(() => document.querySelector('#stage').dataset.ready);
   await waitForFrame(page, 0);
   await page.keyboard.press(key);
@@ -89,8 +89,8 @@ async function measure(browser, address, key, name) {
           const { work, draw } = window.tautTimings;
           const [first, begin] = [work.length, performance.now()];
           setTimeout(() => {
-            const { width, height } = document.querySelector('#canvas');
-            done({ seconds: (performance.now() - begin) / 1000, work: work.slice(first), draw: draw.slice(first), width, height });
+            const canvas = document.querySelector('#canvas');
+            done({ seconds: (performance.now() - begin) / 1000, work: work.slice(first), draw: draw.slice(first), width: canvas.width, height: canvas.height });
           }, milliseconds);
         }),
       1000 * seconds,
