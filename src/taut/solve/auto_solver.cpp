@@ -110,7 +110,7 @@ double AutoSolver::least_iterations(Method method, const Solve& solve) const {
   return std::max<double>(least_trial, block_diagonal_share * 0.5 * std::sqrt(condition) * std::log(2.0 / options_.tolerance));
 }
 
-AutoSolver::Method AutoSolver::rival_of(Method chosen, const Solve& solve) const {
+AutoSolver::Method AutoSolver::rival_of(Method chosen, const Solve& solve) {
   const SystemSize& size = solve.size;
   if (!tried(chosen)) return chosen;
   const double to_beat = expected_work(chosen, size);
@@ -122,6 +122,8 @@ AutoSolver::Method AutoSolver::rival_of(Method chosen, const Solve& solve) const
     const MethodWork w = work(method, size);
     const double hoped = method == direct ? w.setup : w.total(tried(method) ? 0.5 * records_[method].iterations : least_iterations(method, solve));
     if (!tried(method) && hoped < to_beat) return method;
+    // Whether there is hope costs a look at the matrix.
+    if (!tried(method)) records_[method].next_trial = solves_ + shortest_patience;
     if (hoped < least) rival = method, least = hoped;
   }
   return rival;

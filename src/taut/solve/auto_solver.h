@@ -76,7 +76,7 @@ class AutoSolver : public ConstrainedSolver {
   bool tried(Method method) const { return records_[method].iterations >= 0.0; }
   Method choose(const SystemSize& size) const;
   // The rival to try, or `chosen` itself if none.
-  Method rival_of(Method chosen, const Solve& solve) const;
+  Method rival_of(Method chosen, const Solve& solve);
   double least_iterations(Method method, const Solve& solve) const;
   // Iterations of a method until it has cost `limit`.
   int budget(Method method, const SystemSize& size, double limit) const;
