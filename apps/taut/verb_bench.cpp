@@ -137,6 +137,8 @@ void add_contact(CLI::App& parent, int& exit_code) {
       ->check(CLI::Range(0, 1000));
   verb->add_option("--frames", arguments->options.stress_frames, "Of each such run, at most (default 200)")->check(CLI::PositiveNumber);
   verb->add_option("--scene", arguments->options.methods, "Only these scenes of the stress test")->delimiter(',');
+  verb->add_option("--judge", arguments->options.judge,
+                   "Let this program judge every frame of the stress test (the tests' build has one: tests/contact/judge/judge)");
 }
 
 }  // namespace

@@ -23,6 +23,7 @@ struct BenchOptions {
   // contact
   int stress = -1;          // jittered copies of each scene; negative: measure times instead
   int stress_frames = 200;  // of each, at most
+  std::string judge;        // program that judges each frame's surface; empty: none
 };
 
 // Paper, Table 1: MPCG against uPCG on few and on many constraints, 6,561 nodes, h = 3.67 ms.

@@ -1,7 +1,9 @@
 // taut bench contact: what contact costs a step, by phase, while nothing touches (ball) and in a heap of folds (clump); or, with --stress,
-// every contact scene and jittered copies of it, each of which must finish without an intersection in any step.
+// every contact scene and jittered copies of it, each of which must finish without an intersection in any step, by Taut's own check; and
+// with --judge in any frame, by another program.
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -11,6 +13,8 @@
 #include "taut/base/error.h"
 #include "taut/base/parallel.h"
 #include "taut/base/timer.h"
+#include "taut/io/child_process.h"
+#include "taut/io/obj.h"
 #include "taut/scene/scene_file.h"
 
 namespace taut::app {
@@ -96,6 +100,31 @@ struct Trial {
   int steps = 0, retries = 0, most_pairs = 0, impacts = 0;
   Offset intersections = 0, zone_steps = 0, node_steps = 0;
   double seconds = 0.0, kinetic_J = 0.0;
+  int judged = 0, judged_intersecting = 0;  // frames that another program saw, and in which it found intersections
+};
+
+// Gives a frame's whole surface to `judge --solid-from K FILE.obj` (tests/contact/judge), which exits with 0 or, of intersections, 1.
+class FrameJudge {
+ public:
+  explicit FrameJudge(std::string program) : program_(std::move(program)) {}
+
+  void judge(const Simulation& simulation, Trial& trial) const {
+    const SurfaceContact* contact = simulation.surface_contact();
+    if (program_.empty() || contact == nullptr) return;
+    const CollisionSurface& surface = contact->contact().surface();
+    const auto file = std::filesystem::temp_directory_path() / fmt::format("taut-judged-{}.obj", getpid());
+    write_obj(file, {contact->positions(simulation.state().time, simulation.state().x), surface.triangles, {}});
+    const ChildEnd end =
+        run_child({program_, "--solid-from", std::to_string(simulation.cloth().nodes()), file.string()}, std::chrono::minutes(5));
+    std::filesystem::remove(file);
+    if (end.outcome != ChildEnd::Outcome::exited || end.code > 1)
+      throw InputError(fmt::format("the judge {} could not judge a frame: {}", program_, end.errors));
+    ++trial.judged;
+    trial.judged_intersecting += end.code;
+  }
+
+ private:
+  std::string program_;
 };
 
 Trial run_trial(const std::string& scene, const BenchOptions& options, int seed) {
@@ -109,7 +138,10 @@ Trial run_trial(const std::string& scene, const BenchOptions& options, int seed)
   const int frames = std::min(read.time.frames, options.stress_frames), steps = frames * read.time.steps_per_frame;
   Timer timer;
   Trial trial;
+  const int steps_per_frame = read.time.steps_per_frame;
+  const FrameJudge frame_judge(options.judge);
   Simulation simulation(std::move(read));
+  frame_judge.judge(simulation, trial);
   while (trial.steps < steps) {
     StepRecord record;
     const Status status = simulation.step(record);
@@ -125,6 +157,7 @@ Trial run_trial(const std::string& scene, const BenchOptions& options, int seed)
     trial.zone_steps += record.zone_nodes;
     trial.node_steps += record.nodes;
     trial.kinetic_J = record.kinetic_J;
+    if (trial.steps % steps_per_frame == 0) frame_judge.judge(simulation, trial);
   }
   trial.seconds = timer.milliseconds() / 1000.0;
   return trial;
@@ -145,11 +178,11 @@ Json stress(const BenchOptions& options) {
       }
       const double share = trial.node_steps > 0 ? double(trial.zone_steps) / double(trial.node_steps) : 0.0;
       fmt::print(
-          "{:<16} seed {:>2}: {} steps in {:.0f} s, {} intersections, {:.2f} % of node-steps in zones, at most {} pairs pushing, {} "
-          "impacts, "
-          "{} retries, {}\n",
-          scene, seed, trial.steps, trial.seconds, trial.intersections, 100.0 * share, trial.most_pairs, trial.impacts, trial.retries,
-          trial.end);
+          "{:<16} seed {:>2}: {} steps in {:.0f} s, {} intersections, {}{:.2f} % of node-steps in zones, at most {} pairs pushing, "
+          "{} impacts, {} retries, kinetic energy {:.2g} J, {}\n",
+          scene, seed, trial.steps, trial.seconds, trial.intersections,
+          options.judge.empty() ? "" : fmt::format("judged: {} of {} frames intersecting, ", trial.judged_intersecting, trial.judged),
+          100.0 * share, trial.most_pairs, trial.impacts, trial.retries, trial.kinetic_J, trial.end);
       std::fflush(stdout);
       rows.push_back({{"scene", scene},
                       {"solver", "contact"},
@@ -162,6 +195,8 @@ Json stress(const BenchOptions& options) {
                       {"impacts", trial.impacts},
                       {"retries", trial.retries},
                       {"kinetic_J", trial.kinetic_J},
+                      {"judged_frames", trial.judged},
+                      {"judged_intersecting", trial.judged_intersecting},
                       {"end", trial.end}});
     }
   }
