@@ -209,8 +209,7 @@ void Simulation::note_solve(const SolveSummary& summary, StepRecord& record) con
   record.order_ms += summary.order_ms;
   record.factor_ms += summary.factor_ms;
   record.solve_ms += summary.solve_ms + summary.reduce_ms;
-  if (summary.method.starts_with("core_"))
-    record.core_springs = summary.on_stretch_core ? stepper_.stretch_core_springs() : stepper_.core_springs();
+  if (summary.method.starts_with("core_")) record.core_springs = stepper_.core_springs(summary.core);
   record.bound_iterations = std::max(record.bound_iterations, summary.bound_iterations);
 }
 

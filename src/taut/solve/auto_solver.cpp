@@ -14,10 +14,10 @@ namespace taut {
 
 namespace {
 
-constexpr const char* names[] = {auto_core_method, auto_core_method, "upcg:projected_block_diagonal",
+constexpr const char* names[] = {auto_core_method, auto_core_method, auto_core_method, "upcg:projected_block_diagonal",
                                  "upcg:ic0_core",  "upcg:ic0",       "block_cholesky"};
 
-constexpr double shortest_patience = 16, longest_patience = 256;  // solves
+constexpr double shortest_patience = 32, longest_patience = 256;  // solves
 constexpr double bar_after_failure = 64;                          // solves
 constexpr int least_trial = 3;                                    // iterations a method has to show what it can
 constexpr double block_diagonal_share = 0.25;                     // of the iterations that its condition allows, at least
@@ -25,7 +25,8 @@ constexpr double give_up_at = 2.0;                                // times the w
 constexpr double core_condition = 18.0;                           // 2 (1 + ρ) where ρ is not known: that of the chosen core
 constexpr double loosest = 3.0;                                   // times the error that corePCG may leave
 constexpr double worst_condition = 1e12;                          // of what these methods can solve
-constexpr double memory_version = 3;
+constexpr double nearly_all = 0.98;                               // of A's blocks in the core: the full core is the same
+constexpr double memory_version = 4;
 
 // Times are sums, the rest is the last attempt's.
 void add_attempt(SolveSummary&& attempt, SolveSummary& sum) {
@@ -64,14 +65,21 @@ ConstrainedSolver& AutoSolver::solver(Method method) {
   return *solvers_[method];
 }
 
+bool AutoSolver::available(Method method, const SystemSize& size) {
+  if (method == stretch_core) return size.stretch_core_nonzeros > 0.0;
+  return method != full_core || size.core_nonzeros < nearly_all * size.nonzeros;
+}
+
 MethodWork AutoSolver::work(Method method, const SystemSize& size) const {
   const Record& r = records_[method];
   const FactorSize known{r.factor_nonzeros, r.factor_flops};
   switch (method) {
     case core:
-      return core_work(size, known.known() ? known : estimate_factor(size, size.core_nonzeros));
+      return core_work(size, known.known() ? known : estimate_factor(size, size.core_nonzeros), r.preparations);
     case stretch_core:
-      return core_work(size, known.known() ? known : estimate_factor(size, size.stretch_core_nonzeros));
+      return core_work(size, known.known() ? known : estimate_factor(size, size.stretch_core_nonzeros), r.preparations);
+    case full_core:
+      return core_work(size, known.known() ? known : estimate_factor(size, size.nonzeros), r.preparations);
     case block_diagonal:
       return block_diagonal_work(size);
     case ic0_core:
@@ -105,9 +113,15 @@ AutoSolver::Method AutoSolver::choose(const SystemSize& size) const {
 
 // Of a method that has not been tried.
 double AutoSolver::least_iterations(Method method, const Solve& solve) const {
-  if (method != block_diagonal) return least_trial;
-  const double condition = block_diagonal_condition(*solve.original.matrix);
-  return std::max<double>(least_trial, block_diagonal_share * 0.5 * std::sqrt(condition) * std::log(2.0 / options_.tolerance));
+  if (method == full_core) return 1.0;
+  double least = least_trial;
+  if (method == block_diagonal) {
+    const double condition = block_diagonal_condition(*solve.original.matrix);
+    least = block_diagonal_share * 0.5 * std::sqrt(condition) * std::log(2.0 / options_.tolerance);
+  } else if (method == ic0 && tried(ic0_core) && solve.original.rho >= 0.0) {
+    least = records_[ic0_core].iterations / std::sqrt(1.0 + solve.original.rho);
+  }
+  return std::max<double>(least_trial, least);
 }
 
 AutoSolver::Method AutoSolver::rival_of(Method chosen, const Solve& solve) {
@@ -120,7 +134,8 @@ AutoSolver::Method AutoSolver::rival_of(Method chosen, const Solve& solve) {
     const Method method = static_cast<Method>(m);
     if (method == chosen || !available(method, size) || records_[method].next_trial > solves_) continue;
     const MethodWork w = work(method, size);
-    const double hoped = method == direct ? w.setup : w.total(tried(method) ? 0.5 * records_[method].iterations : least_iterations(method, solve));
+    const double hoped =
+        method == direct ? w.setup : w.total(tried(method) ? 0.5 * records_[method].iterations : least_iterations(method, solve));
     if (!tried(method) && hoped < to_beat) return method;
     // Whether there is hope costs a look at the matrix.
     if (!tried(method)) records_[method].next_trial = solves_ + shortest_patience;
@@ -160,6 +175,11 @@ double AutoSolver::tolerance_for(Method method, const LinearSystem& system) cons
   return std::max(1e-14, options_.tolerance * factor);
 }
 
+std::span<const std::uint8_t> AutoSolver::all_blocks(const BlockCsr& a) {
+  all_blocks_.assign(static_cast<std::size_t>(a.pattern->blocks()), 1);
+  return all_blocks_;
+}
+
 AutoSolver::Attempt AutoSolver::attempt(Method method, int most_iterations, Solve& solve) {
   // Few iterations would not show how bad it is.
   if (is_incomplete(method) && records_[method].condition == 0.0)
@@ -173,7 +193,8 @@ AutoSolver::Attempt AutoSolver::attempt(Method method, int most_iterations, Solv
   with.observer = observer;
   SolveSummary s;
   LinearSystem system = solve.system;
-  if (method == stretch_core) system.core = system.stretch_core, system.rho = system.stretch_rho, s.on_stretch_core = true;
+  if (method == stretch_core) system.core = system.stretch_core, system.rho = system.stretch_rho, s.core = CoreUsed::stretch;
+  if (method == full_core) system.core = all_blocks(*system.matrix), system.rho = 0.0, s.core = CoreUsed::all;
   run_other(with, system, solve.x, s);
   if (s.status.ok() && !all_finite(solve.x)) s.status = {Outcome::not_finite, "the solution holds NaN or infinity"};
   learn(method, s, record, tolerance, solve);
@@ -200,7 +221,7 @@ AutoSolver::Attempt AutoSolver::attempt(Method method, int most_iterations, Solv
 
 void AutoSolver::learn(Method method, const SolveSummary& s, const CgCoefficients& record, double tolerance, Solve& solve) {
   Record& r = records_[method];
-  r.preparations = s.preparations;
+  r.preparations = s.preparations + s.fallbacks;
   if (s.factor_nonzeros > 0.0) r.factor_nonzeros = s.factor_nonzeros, r.factor_flops = s.factor_flops;
   if (!s.status.ok() && s.status.outcome != Outcome::max_iterations) {
     r.iterations = -1.0;

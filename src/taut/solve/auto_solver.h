@@ -4,19 +4,20 @@
 //   core_fast                        on whatever core the system has, with a bound on its iterations; the measure of the others
 //                                    and, where that is another, on the paper's: at soft stretch springs or very stiff ones it may be
 //                                    better
+//                                    and on all of A: a direct solve in single precision, refined; where all springs are strong
 //   upcg:projected_block_diagonal    no set-up; for soft or quiet cloth. Projected: the bound on its condition holds for the blocks of Ã,
-//   not
-//                                    for those of A restricted to the free directions
+//                                    not for those of A restricted to the free directions
 //   upcg:ic0_core, upcg:ic0          little set-up, but iterations grow with the stiffness, and they may break down
-//   block_cholesky                   direct; where nearly all springs are in the core
+//   block_cholesky                   direct, in double precision
 //
 // Work is counted (solve/solver_work.h) from the sizes of matrix and factor and from the iterations of a method's last solve; no clock.
 //
 // Choose: the least work, of the methods that have been tried. The first solve is corePCG's.
 //
-// Try another one now and then: first those never tried, one a solve, if three iterations would win (of the block diagonal: a quarter of what
-// its condition allows); then such as would win with half their last iterations, after 16
-// solves, and after twice as many each time they lose (at most 256). A trial that has cost as much as the chosen method would is given up.
+// Try another one now and then: first those never tried, one a solve, if the fewest iterations that can be hoped for would win: one on all
+// of A; of the block diagonal a quarter of what its condition allows; of IC(0) of A a share of what that of the core took, the root of the
+// condition that the core leaves; else three. Then such as would win with half their last iterations, after 32 solves, and after twice as
+// many each time they lose (at most 256). A trial that has cost as much as the chosen method would is given up.
 //
 // Give up a method without a bound when it has cost twice what corePCG would, corePCG itself at twice what the direct one would.
 //
@@ -53,9 +54,10 @@ class AutoSolver : public ConstrainedSolver {
   void run(const LinearSystem& system, std::span<double> x, SolveSummary& summary) override;
 
  private:
-  enum Method : int { core, stretch_core, block_diagonal, ic0_core, ic0, direct, method_count };
-  static bool is_incomplete(Method method) { return method != core && method != direct; }
-  static bool available(Method method, const SystemSize& size) { return method != stretch_core || size.stretch_core_nonzeros > 0.0; }
+  enum Method : int { core, stretch_core, full_core, block_diagonal, ic0_core, ic0, direct, method_count };
+  // Whether its accuracy has to be learnt.
+  static bool is_incomplete(Method method) { return method != core && method != full_core && method != direct; }
+  static bool available(Method method, const SystemSize& size);
   static double first_condition(Method method, const LinearSystem& system);
   static double allowed_condition(const LinearSystem& system);
 
@@ -64,9 +66,9 @@ class AutoSolver : public ConstrainedSolver {
     double iterations = -1.0;  // of its last solve, or more than where it was given up; negative: never tried
     double condition = 0.0;    // of M⁻¹ A, as far as its solves have shown; 0: none yet
     double next_trial = 0.0;   // number of the solve from which on it may be tried
-    double patience = 16.0;    // solves between trials
+    double patience = 32.0;    // solves between trials
     double factor_nonzeros = 0.0, factor_flops = 0.0;
-    double preparations = 1.0;  // of the preconditioner, in its last solve
+    double preparations = 1.0;  // of the preconditioner, in its last solve; of a core's factor: once more in double precision
   };
   enum class Attempt { solved, given_up, failed };
 
@@ -85,11 +87,13 @@ class AutoSolver : public ConstrainedSolver {
   void learn(Method method, const SolveSummary& summary, const CgCoefficients& record, double tolerance, Solve& solve);
   void note_trial(Method method, bool won);
   ConstrainedSolver& solver(Method method);
+  std::span<const std::uint8_t> all_blocks(const BlockCsr& a);
 
   std::array<Record, method_count> records_;
   double solves_ = 0.0;
   std::array<std::unique_ptr<ConstrainedSolver>, method_count> solvers_;
   std::vector<double> guess_;
+  std::vector<std::uint8_t> all_blocks_;  // a core's mask
 };
 
 }  // namespace taut

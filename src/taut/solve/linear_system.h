@@ -38,6 +38,9 @@ struct LinearSystem {
   double stretch_rho = -1.0;
 };
 
+// Which springs the core of a solve had: LinearSystem::core, its stretch_core, or all of them.
+enum class CoreUsed { own, stretch, all };
+
 // What a solve did. Times in milliseconds.
 struct SolveSummary {
   std::string solver;
@@ -55,7 +58,7 @@ struct SolveSummary {
   double factor_nonzeros = 0.0;  // entries of the sparse Cholesky factor, and operations to form it; 0 where there is none
   double factor_flops = 0.0;
   int preparations = 1;              // of the preconditioner: more than one where IC(0) had to find a shift
-  bool on_stretch_core = false;      // solved on LinearSystem::stretch_core instead of its core
+  CoreUsed core = CoreUsed::own;     // of a method that has one
   const char* precision = "double";  // of the factor that the answer came from: "single" or "double"
   int fallbacks = 0;                 // times that single precision, or a method that `auto` tried first, failed and another took over
   double memory_bytes = 0.0;         // what the method holds beyond A and the vectors

@@ -51,8 +51,9 @@ MethodWork incomplete_work(const SystemSize& size, double nonzeros, double prepa
           loop_work(size) + work_rates.incomplete * 8.0 * nonzeros};
 }
 
-MethodWork core_work(const SystemSize& size, const FactorSize& factor) {
-  return {0.5 * work_rates.factor * factor.flops + work_rates.factor_entry * factor.nonzeros, loop_work(size) + factor_solve_work(size, factor)};
+MethodWork core_work(const SystemSize& size, const FactorSize& factor, double preparations) {
+  const double once = 0.5 * work_rates.factor * factor.flops + work_rates.factor_entry * factor.nonzeros;
+  return {once * (1.0 + 2.0 * (preparations - 1.0)), loop_work(size) + factor_solve_work(size, factor)};
 }
 
 MethodWork direct_work(const FactorSize& factor) {

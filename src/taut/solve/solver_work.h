@@ -47,7 +47,8 @@ FactorSize estimate_factor(const SystemSize& size, double nonzeros);
 MethodWork block_diagonal_work(const SystemSize& size);
 // preparations: how often IC(0) was factorised.
 MethodWork incomplete_work(const SystemSize& size, double nonzeros, double preparations);
-MethodWork core_work(const SystemSize& size, const FactorSize& factor);
+// preparations: 1, or 2 where the factor had to be computed again in double precision.
+MethodWork core_work(const SystemSize& size, const FactorSize& factor, double preparations = 1.0);
 MethodWork direct_work(const FactorSize& factor);  // its one solve is in setup
 
 }  // namespace taut

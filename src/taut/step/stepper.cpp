@@ -63,6 +63,12 @@ std::vector<std::uint8_t> Stepper::chosen_core(double h) const {
       external_.masses());
 }
 
+Index Stepper::core_springs(CoreUsed core) const {
+  if (core == CoreUsed::all)
+    return assembler_.elements_in(std::vector<std::uint8_t>(static_cast<std::size_t>(assembler_.pattern()->blocks()), 1));
+  return core == CoreUsed::stretch && !stretch_core_.empty() ? stretch_core_springs_ : core_springs_;
+}
+
 void Stepper::choose_core(double h) {
   core_h_ = h;
   if (!chooses_core_) return;

@@ -51,8 +51,7 @@ class Stepper {
   int newton_iterations() const { return newton_iterations_; }
   std::span<const std::uint8_t> core_mask() const { return core_; }
   // Elements whose blocks off the diagonal are in the core.
-  Index core_springs() const { return core_springs_; }
-  Index stretch_core_springs() const { return stretch_core_.empty() ? core_springs_ : stretch_core_springs_; }
+  Index core_springs(CoreUsed core = CoreUsed::own) const;
   std::span<const Vec3> unknown() const { return unknown_; }
   // The impulses that the last solve was given, N s; empty if none.
   std::span<const Vec3> impulses() const { return given_; }
