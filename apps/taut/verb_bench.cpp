@@ -135,7 +135,7 @@ void add_contact(CLI::App& parent, int& exit_code) {
   verb->add_option("--nodes", arguments->options.nodes, "Nodes of both sheets, a square number")->expected(1)->check(CLI::PositiveNumber);
   verb->add_option("--stress", arguments->options.stress, "Run each contact scene and this many jittered copies, and report how they end")
       ->check(CLI::Range(0, 1000));
-  verb->add_option("--frames", arguments->options.stress_frames, "Of each such run, at most (default 200)")->check(CLI::PositiveNumber);
+  verb->add_option("--frames", arguments->options.stress_frames, "Of each such run, whatever the scene says (default 200)")->check(CLI::PositiveNumber);
   verb->add_option("--scene", arguments->options.methods, "Only these scenes of the stress test")->delimiter(',');
   verb->add_option("--judge", arguments->options.judge,
                    "Let this program judge every frame of the stress test (the tests' build has one: tests/contact/judge/judge)");

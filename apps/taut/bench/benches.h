@@ -22,7 +22,7 @@ struct BenchOptions {
   double seconds_limit = 20.0;       // after which an iterative method is given up
   // contact
   int stress = -1;          // jittered copies of each scene; negative: measure times instead
-  int stress_frames = 200;  // of each, at most
+  int stress_frames = 200;  // of each, whatever the scene says
   std::string judge;        // program that judges each frame's surface; empty: none
 };
 

@@ -61,28 +61,18 @@ ClothContact::ClothContact(CollisionSurface surface, std::vector<CollisionBody> 
     : surface_(std::make_unique<CollisionSurface>(std::move(surface))),
       bodies_(std::move(bodies)),
       mass_(std::move(mass)),
-      options_(options),
-      separation_(separation_share * options.thickness),
-      largest_thickness_(options.thickness),
-      search_(*surface_, start) {
-  for (const CollisionBody& body : bodies_) largest_thickness_ = std::max(largest_thickness_, body.is_solid ? body.thickness : 0.0);
+      options_(std::move(options)),
+      laws_(options_, bodies_),
+      separation_(separation_share * std::min(options_.thickness, laws_.smallest_thickness())),
+      search_(*surface_, start) {}
+
+// The first node is of one of the two bodies, the last of the other.
+const PairLaw& ClothContact::law_of(const CollisionPair& pair) const {
+  return laws_.of(surface_->body[pair.node.front()], surface_->body[pair.node.back()]);
 }
 
-const CollisionBody* ClothContact::solid_of(const CollisionPair& pair) const {
-  for (const Index node : pair.node)
-    if (surface_->is_solid[node]) return &bodies_[surface_->body[node]];
-  return nullptr;
-}
-
-double ClothContact::thickness_of(const CollisionPair& pair) const {
-  if (ignored(pair)) return 0.0;
-  const CollisionBody* solid = solid_of(pair);
-  return solid && solid->thickness > 0.0 ? solid->thickness : options_.thickness;
-}
-
-double ClothContact::friction_of(const CollisionPair& pair) const {
-  const CollisionBody* solid = solid_of(pair);
-  return solid ? solid->friction : options_.friction;
+bool ClothContact::meets_solid(const CollisionPair& pair) const {
+  return surface_->is_solid[pair.node.front()] || surface_->is_solid[pair.node.back()];
 }
 
 Status ClothContact::resolve(const ClothContactStep& step, std::span<Vec3> x1) {
@@ -103,7 +93,7 @@ Status ClothContact::resolve(const ClothContactStep& step, std::span<Vec3> x1) {
 void ClothContact::repel(Work& work) {
   Timer timer;
   const std::vector<NearPair> near =
-      search_.near(work.step.x0, work.x1, largest_thickness_, [&](const CollisionPair& pair) { return thickness_of(pair); });
+      search_.near(work.step.x0, work.x1, laws_.largest_thickness(), [&](const CollisionPair& pair) { return thickness_of(pair); });
   counts_.near = static_cast<int>(near.size());
   work.rows.reserve(near.size());
   for (const NearPair& pair : near) {

@@ -24,6 +24,7 @@
 
 #include "taut/base/status.h"
 #include "taut/contact/contact_options.h"
+#include "taut/contact/pair_laws.h"
 #include "taut/contact/pair_search.h"
 #include "taut/contact/rigid_zones.h"
 #include "taut/contact/solid_contact.h"
@@ -90,10 +91,11 @@ class ClothContact {
 
  private:
   struct Work;
-  bool ignored(const CollisionPair& pair) const { return !options_.self && !solid_of(pair); }
-  double thickness_of(const CollisionPair& pair) const;
-  double friction_of(const CollisionPair& pair) const;
-  const CollisionBody* solid_of(const CollisionPair& pair) const;
+  bool ignored(const CollisionPair& pair) const { return !options_.self && !meets_solid(pair); }
+  const PairLaw& law_of(const CollisionPair& pair) const;
+  double thickness_of(const CollisionPair& pair) const { return ignored(pair) ? 0.0 : law_of(pair).thickness; }
+  double friction_of(const CollisionPair& pair) const { return law_of(pair).friction; }
+  bool meets_solid(const CollisionPair& pair) const;
   void repel(Work& work);
   void add_touched(Work& work) const;
   bool sweep(Work& work, int round);
@@ -110,7 +112,8 @@ class ClothContact {
   std::vector<CollisionBody> bodies_;
   std::vector<double> mass_;
   ContactOptions options_;
-  double separation_, largest_thickness_;
+  PairLaws laws_;
+  double separation_;
   PairSearch search_;
   ClothContactCounts counts_;
   ZoneState zones_;

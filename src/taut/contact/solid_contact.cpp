@@ -34,8 +34,14 @@ struct SolidContact::Normals {
   std::span<const Vec3> span() const { return {n.data(), count}; }
 };
 
-SolidContact::SolidContact(std::vector<Solid> solids, Index nodes, ContactOptions options)
-    : solids_(std::move(solids)), options_(options), nodes_(nodes), met_(static_cast<std::size_t>(nodes)) {}
+SolidContact::SolidContact(std::vector<Solid> solids, Index nodes, ContactOptions options, std::vector<std::vector<std::uint8_t>> meets)
+    : solids_(std::move(solids)),
+      meets_(std::move(meets)),
+      options_(std::move(options)),
+      nodes_(nodes),
+      met_(static_cast<std::size_t>(nodes)) {
+  meets_.resize(solids_.size());
+}
 
 // ---- one step --------------------------------------------------------------------------------------------------------------------
 
@@ -141,7 +147,7 @@ bool SolidContact::move_out(Index node, Vec3& x_end, double& depth) const {
   if (pin_ndof_[node] != 3) return false;
   bool moved = false;
   for (std::size_t s = 0; s < steps_.size(); ++s) {
-    if (!steps_[s].meets(start_[node], x_end, -depth_tolerance(steps_[s]))) continue;
+    if (!may_meet(s, node) || !steps_[s].meets(start_[node], x_end, -depth_tolerance(steps_[s]))) continue;
     const Vec3 anchor = steps_[s].anchor(start_[node], x_end, options_.touch_tolerance);
     const LandingPlane plane = steps_[s].landing(x_end, anchor);
     depth = std::max(depth, -plane.gap);
@@ -182,7 +188,7 @@ int SolidContact::add_met(std::span<const Vec3> x_end, const Meets& meets) {
   const std::size_t before = contacts_.size();
   for (std::size_t s = 0; s < steps_.size(); ++s) {
     parallel_for(nodes_, node_grain, [&](Index begin, Index end) {
-      for (Index i = begin; i < end; ++i) met_[i] = pin_ndof_[i] != 0 && meets(steps_[s], start_[i], x_end[i]);
+      for (Index i = begin; i < end; ++i) met_[i] = pin_ndof_[i] != 0 && may_meet(s, i) && meets(steps_[s], start_[i], x_end[i]);
     });
     Contact wanted;
     wanted.solid = static_cast<Index>(s);

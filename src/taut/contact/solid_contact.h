@@ -12,16 +12,17 @@
 //                    directions that the normals leave free), and never more than stops it
 //
 // One step is   begin_step; do { constrain; solve with impulses } while (update); finish.
-// The set begins with the contacts of the step before and nodes that are predicted to touch. A node that hardly slips (1 % of its way) sticks,
-// others slide. A pass changes the set where it is wrong: it releases what pulls (of one node's contacts the one that pulls most), adds nodes that
-// ended inside, turns stick into slide, renews friction, and renews the planes of nodes that float over a curved surface. Sliding becomes
-// sticking at the end of a step, where friction was more than enough to stop the node; a node that broke loose waits 1, 3, 7, 15 steps.
+// The set begins with the contacts of the step before and nodes that are predicted to touch. A node that hardly slips (1 % of its way)
+// sticks, others slide. A pass changes the set where it is wrong: it releases what pulls (of one node's contacts the one that pulls most),
+// adds nodes that ended inside, turns stick into slide, renews friction, and renews the planes of nodes that float over a curved surface.
+// Sliding becomes sticking at the end of a step, where friction was more than enough to stop the node; a node that broke loose waits 1, 3,
+// 7, 15 steps.
 //
 // Each pass costs a linear solve, so small faults wait for the next step, which begins with them mended: a node inside by less than
-// 2e-4 of the solid's size (touch_tolerance on planes), pulls of together less than 1 % of all pushes, friction that is off by together less
-// than 5 % of what all nodes can hold. Friction is renewed at most 3 times a node and not after pass 4: then only normals change, which
-// ends. Against cycling: a contact that was let go twice in a step and hit again stays until the next step. What still
-// ends inside at the pass limit, `finish` moves to the surface.
+// 2e-4 of the solid's size (touch_tolerance on planes), pulls of together less than 1 % of all pushes, friction that is off by together
+// less than 5 % of what all nodes can hold. Friction is renewed at most 3 times a node and not after pass 4: then only normals change,
+// which ends. Against cycling: a contact that was let go twice in a step and hit again stays until the next step. What still ends inside at
+// the pass limit, `finish` moves to the surface.
 //
 // Deterministic (order: node, then solid; the same bits for any thread count). One step at a time, one thread calls; loops run in parallel.
 
@@ -78,14 +79,15 @@ struct ContactCounts {
 struct Obstacle {
   Index solid = 0;
   Vec3 normal = Vec3::UnitZ();
-  double offset = 0.0;           // m
-  Vec3 carried = Vec3::Zero();   // m: where the solid's motion takes the node's place at the start
+  double offset = 0.0;          // m
+  Vec3 carried = Vec3::Zero();  // m: where the solid's motion takes the node's place at the start
   double friction = 0.0;
 };
 
 class SolidContact {
  public:
-  SolidContact(std::vector<Solid> solids, Index nodes, ContactOptions options);
+  // meets: one list a solid, of one byte a node: 1 where the node may touch it; an empty list, or none at all: all nodes.
+  SolidContact(std::vector<Solid> solids, Index nodes, ContactOptions options, std::vector<std::vector<std::uint8_t>> meets = {});
 
   // Start of a step [t, t + h] (s). x: node positions at t, m; x_predicted: where they would be at t + h without contact (x + h v).
   // pins: the constraints so far; a node with ndof 0 there is never a contact. All three are copied as far as they are needed.
@@ -164,6 +166,7 @@ class SolidContact {
   std::span<const Contact> of(const TouchedNode& touched) const {
     return {contacts_.data() + touched.first, static_cast<std::size_t>(touched.count)};
   }
+  bool may_meet(std::size_t solid, Index node) const { return meets_[solid].empty() || meets_[solid][node]; }
   const SolidStep& step_of(const Contact& contact) const { return steps_[static_cast<std::size_t>(contact.solid)]; }
   bool has_friction(const TouchedNode& touched) const;
   const Contact& holder(const TouchedNode& touched) const;
@@ -200,6 +203,7 @@ class SolidContact {
   void remember();
 
   std::vector<Solid> solids_;
+  std::vector<std::vector<std::uint8_t>> meets_;
   ContactOptions options_;
   Index nodes_;
   double h_ = 0.0;

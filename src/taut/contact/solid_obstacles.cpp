@@ -12,8 +12,8 @@ Obstacle SolidContact::obstacle(const SolidStep& step, Index node, const Vec3& x
 }
 
 std::optional<Obstacle> SolidContact::obstacle(Index node, const Vec3& x_end) const {
-  for (const SolidStep& step : steps_)
-    if (step.meets(start_[node], x_end, -depth_tolerance(step))) return obstacle(step, node, x_end);
+  for (std::size_t s = 0; s < steps_.size(); ++s)
+    if (may_meet(s, node) && steps_[s].meets(start_[node], x_end, -depth_tolerance(steps_[s]))) return obstacle(steps_[s], node, x_end);
   return {};
 }
 

@@ -58,6 +58,7 @@ class Settling {
   static ContactOptions options(ContactOptions contact) {
     contact.self = true;
     contact.friction = 0.0;
+    for (ContactPair& pair : contact.pairs) pair.friction = 0.0;
     return contact;
   }
   static std::vector<CollisionBody> smooth(std::span<const CollisionBody> bodies) {

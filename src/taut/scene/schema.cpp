@@ -53,9 +53,11 @@ std::string unknown_solver(const std::string& name) {
 }
 
 KeyInfo core_info(bool unset) {
-  return {.doc = "which springs make the matrix core: `stretch`, as in the paper, or `auto`, those whose strength would cost iterations, of any "
-                 "class; when not given: `auto` for the solver `auto`, `stretch` for all others",
-          .unset = unset};
+  return {
+      .doc =
+          "which springs make the matrix core: `stretch`, as in the paper, or `auto`, those whose strength would cost iterations, of any "
+          "class; when not given: `auto` for the solver `auto`, `stretch` for all others",
+      .unset = unset};
 }
 
 void describe_solver(SchemaVisitor& v, SolverOptions& solver) {
@@ -79,29 +81,6 @@ void describe_solver(SchemaVisitor& v, SolverOptions& solver) {
   reordering = reordering_names[static_cast<std::size_t>(index)];
   v.flag("reuse_analysis", solver.reuse_analysis,
          {.doc = "direct factorisations keep ordering and symbolic work while the pattern is the same; the paper analyses in every step"});
-}
-
-void describe_contact(SchemaVisitor& v, ContactOptions& contact) {
-  v.integer("max_passes", contact.max_passes,
-            {.doc = "solves per step, at most, until the contacts and their stick or slide no longer change", .min = 1, .max = 1000});
-  v.number("touch_tolerance", contact.touch_tolerance,
-           {.doc = "a node this close to a solid's thickened surface touches it", .unit = "m", .min = 0, .max = 0.1});
-  v.flag("self", contact.self, {.doc = "keeps cloth from passing through itself, other cloths and mesh solids"});
-  v.number("thickness", contact.thickness,
-           {.doc = "layers of cloth keep this far apart, middle to middle; 0: a tenth of the mean edge, at most 1 mm",
-            .unit = "m",
-            .min = 0,
-            .max = 1});
-  v.number("friction", contact.friction, {.doc = "Coulomb's μ of cloth on cloth", .min = 0, .max = 100});
-  v.integer("sweeps", contact.sweeps,
-            {.doc = "rounds of impulses, at most, before nodes that still collide are held as rigid zones", .min = 0, .max = 1000});
-  v.integer("check_every", contact.check_every,
-            {.doc = "steps from one exact check for intersections (stats.csv) to the next; 0: none", .min = 0, .max = 1e6});
-  v.flag("allow_intersections", contact.allow_intersections,
-         {.doc = "starts although the cloths intersect; what has passed through then may stay so"});
-  v.flag("untangle", contact.untangle,
-         {.doc = "cloth that intersects at the start, or is inside a solid, is drawn apart before the first step, as `--untangle` does; "
-                 "pinned nodes stay"});
 }
 
 void describe_wind(SchemaVisitor& v, Wind& wind) {
@@ -155,6 +134,7 @@ void describe(SchemaVisitor& v, Scene& scene) {
          [&](Solid& solid) { describe_solid(v, solid); });
   name_all(v, "cloth", scene.cloths);
   name_all(v, "solid", scene.solids);
+  check_pairs(v, scene);
 }
 
 }  // namespace taut

@@ -9,6 +9,7 @@
 #include "taut/base/timer.h"
 #include "taut/force/overshoot.h"
 #include "taut/linalg/sparse_cholesky.h"
+#include "taut/scene/solid_variants.h"
 
 namespace taut {
 
@@ -20,12 +21,17 @@ SolverOptions fallback_options(const SolverOptions& options) {
   return direct;
 }
 
+SolidContact make_solid_contact(const Scene& scene, const ClothModel& cloth) {
+  SolidVariants variants = solid_variants(scene, cloth);
+  return SolidContact(std::move(variants.solids), cloth.nodes(), scene.contact, std::move(variants.meets));
+}
+
 }  // namespace
 
 Simulation::Simulation(Scene scene)
     : scene_(std::move(scene)),
       cloth_(scene_),
-      contact_(scene_.solids, cloth_.nodes(), scene_.contact),
+      contact_(make_solid_contact(scene_, cloth_)),
       surface_contact_(SurfaceContact::wanted(scene_) ? std::make_unique<SurfaceContact>(scene_, cloth_) : nullptr),
       stepper_(cloth_.nodes(), cloth_.force_models(), cloth_.external(), scene_.time.integrator, scene_.solver, scene_.time.newton),
       state_(cloth_.start()) {
