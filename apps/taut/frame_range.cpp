@@ -37,9 +37,17 @@ CLI::Validator frame_range_syntax() {
           ""};
 }
 
+int last_frame_said(const ResultFrames& frames) {
+  const int last = frames.last_frame();
+  if (frames.results().has_gap())
+    fmt::print(stderr, "note: {} is missing although there are later frames; only 0 to {} are used. Run the scene anew to have them all\n",
+               frames.results().frame_file(last + 1).string(), last);
+  return last;
+}
+
 FrameRange chosen_frames(const std::string& text, const ResultFrames& frames) {
   FrameRange range = parse(text).value_or(FrameRange{-1, -1, 1});
-  const int last = frames.last_frame();
+  const int last = last_frame_said(frames);
   range.first = std::max(range.first, 0);
   if (range.last < 0) range.last = last;
   if (range.last > last || range.first > last)

@@ -13,6 +13,8 @@ struct FrameRange {
 
 // For CLI::Option::check.
 CLI::Validator frame_range_syntax();
+// The last frame there is; where later ones follow behind one that is missing, says so on stderr.
+int last_frame_said(const ResultFrames& frames);
 // `text` has passed the check, or is empty: all frames. Throws InputError when the result lacks one of them.
 FrameRange chosen_frames(const std::string& text, const ResultFrames& frames);
 

@@ -129,7 +129,9 @@ class JsonProgress : public RunObserver {
 
  private:
   static void print(const nlohmann::ordered_json& line) {
-    fmt::print("{}\n", line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+    // Where nobody takes the lines any more (a full disk) the run goes on; main() says so at the end.
+    const std::string text = line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+    std::fputs(text.c_str(), stdout);
     std::fflush(stdout);
   }
   Pace pace_;

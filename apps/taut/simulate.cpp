@@ -11,7 +11,8 @@ namespace {
 
 void print_summary(const RunSummary& s, const Simulation& simulation, const ResultsFolder& results, bool picture) {
   const Scene& scene = simulation.scene();
-  fmt::print("\n{}\n\n", scene.title);
+  fmt::print("\n");
+  if (!scene.title.empty()) fmt::print("{}\n\n", scene.title);
   const auto row = [](const char* name, const std::string& value) { fmt::print("  {:<22}{}\n", name, value); };
   row("nodes", fmt::format("{}", s.nodes));
   row("solver", fmt::format("{}, tolerance {:g}", scene.solver.name, scene.solver.tolerance));
@@ -21,6 +22,9 @@ void print_summary(const RunSummary& s, const Simulation& simulation, const Resu
                                  s.mean_solver_ms, s.mean_contact_ms));
   row("iterations", fmt::format("{:.1f} on average, {} at most", s.mean_iterations, s.max_iterations));
   row("largest stretch", fmt::format("{:.1f} %", 100.0 * s.max_stretch));
+  if (s.overshoots.steps > 0)
+    row("overshoot", fmt::format("up to {:.1f} % of a spring's length in {} steps, although they were halved {} times",
+                                 100.0 * s.overshoots.largest, s.overshoots.steps, scene.time.max_halvings));
   if (s.deepest_m > 0.0) row("deepest in a solid", fmt::format("{:.3g} mm before it was moved out", 1000.0 * s.deepest_m));
   if (s.fallbacks > 0) row("fall-backs", fmt::format("{} solves were done directly after the chosen solver failed", s.fallbacks));
   row("peak memory", fmt::format("{:.0f} MB", s.peak_memory_MB));
@@ -46,9 +50,13 @@ int simulate(Simulation& simulation, const ResultsFolder& results, const Simulat
     if (!options.export_format.empty()) exporting = std::make_unique<LiveExport>(results, options.export_format, *progress);
     summary = run(simulation, results, exporting ? *exporting : *progress, interrupt_flag(), first_frame);
     if (exporting) exported = exporting->finish() ? 1 : 0;
+    if (options.style == ProgressStyle::json_lines)
+      for (const std::string& warning : summary.warnings) progress->on_message("warning: " + warning);
   }
   if (options.picture) draw_contact_sheet(simulation, results);
   if (options.style == ProgressStyle::automatic) print_summary(summary, simulation, results, options.picture);
+  if (options.style != ProgressStyle::json_lines)
+    for (const std::string& warning : summary.warnings) fmt::print(stderr, "taut: warning: {}\n", warning);
   switch (summary.end) {
     case RunEnd::finished:
       return exported == 0 ? 1 : 0;

@@ -55,7 +55,7 @@ void add_roofline(CLI::App& parent, int& exit_code) {
   CLI::App* verb = parent.add_subcommand("roofline", "Each phase of a step against this machine's measured peak and bandwidth");
   auto arguments = std::make_shared<BenchArguments>();
   verb->add_option("--json", arguments->json, "Write the figures to this file");
-  verb->add_option("--threads", arguments->threads, "Threads (default 1)")->check(CLI::Range(1, 1024));
+  verb->add_option("--threads", arguments->threads, "Threads (default 1)")->check(between(1, 1024));
   verb->add_option("--nodes", arguments->options.nodes, "Sizes: 1681, 6561, 25921 (default: these), 103041, 263169")
       ->check(CLI::IsMember({1681, 6561, 25921, 103041, 263169}));
   verb->add_option("--scenes", arguments->options.scenes, "Folder of the scene files (default: scenes)");
@@ -82,7 +82,7 @@ NewBench add_bench(CLI::App& parent, const char* name, const char* description, 
   verb->add_option("--plot", arguments->plot, "Draw them in this file (.svg or .png)");
   verb->add_option("--threads", arguments->threads,
                    "Threads for Taut's own parts (default 1, as in the paper; CHOLMOD's BLAS always has one)")
-      ->check(CLI::Range(1, 1024));
+      ->check(between(1, 1024));
   verb->add_option("--scenes", arguments->options.scenes, "Folder of the scene files (default: scenes)");
   verb->footer(fmt::format("Example: taut bench {0} --json out/{0}.json --plot out/{0}.png", name));
   verb->callback([=, &exit_code] { exit_code = run_bench(name, bench, *arguments); });
@@ -92,9 +92,9 @@ NewBench add_bench(CLI::App& parent, const char* name, const char* description, 
 void add_table(CLI::App& parent, const char* name, const char* description, const BenchFunction& bench, int& exit_code) {
   const auto [verb, arguments] = add_bench(parent, name, description, bench, exit_code);
   BenchOptions& options = arguments->options;
-  verb->add_option("--steps", options.steps, "Steps to measure a cell (default 20)")->check(CLI::Range(1, 100000));
-  verb->add_option("--tolerance", options.tolerance, "Of the paper's stop rule (default 1e-3)")->check(CLI::Range(1e-14, 1.0));
-  verb->add_option("--k-stretch", options.stiffnesses, "Only these stiffnesses, N/m")->check(CLI::PositiveNumber);
+  verb->add_option("--steps", options.steps, "Steps to measure a cell (default 20)")->check(between(1, 100000));
+  verb->add_option("--tolerance", options.tolerance, "Of the paper's stop rule (default 1e-3)")->check(between(1e-14, 1.0));
+  verb->add_option("--k-stretch", options.stiffnesses, "Only these stiffnesses, N/m")->check(above(0));
   verb->add_option("--nodes", options.nodes, "Only these sizes: 1681, 6561, 25921")->check(CLI::IsMember({1681, 6561, 25921}));
 }
 
@@ -104,10 +104,9 @@ CLI::App* add_sweep(CLI::App& parent, const char* name, const char* description,
   const auto [verb, arguments] = add_bench(parent, name, description, bench, exit_code);
   BenchOptions& options = arguments->options;
   verb->add_flag("--full", options.full, "All sizes and cells: takes much longer than ten minutes");
-  verb->add_option("--nodes", options.nodes, sizes)->delimiter(',')->check(CLI::PositiveNumber);
+  verb->add_option("--nodes", options.nodes, sizes)->delimiter(',')->check(above(0));
   verb->add_option("--solver", options.methods, "Only these solvers (default: those worth comparing)")->delimiter(',');
-  verb->add_option("--time-limit", options.seconds_limit, "Seconds after which a method is given up (default 20)")
-      ->check(CLI::PositiveNumber);
+  verb->add_option("--time-limit", options.seconds_limit, "Seconds after which a method is given up (default 20)")->check(above(0));
   if (std::string(name) == "flatness")
     verb->add_option("--k-stretch", options.stiffnesses,
                      "Only these of 60, 600, ..., 6000000 N/m (default 60, 6000, 6000000; with --full all)")
@@ -119,12 +118,8 @@ CLI::App* add_sweep(CLI::App& parent, const char* name, const char* description,
 void add_integrators(CLI::App& parent, int& exit_code) {
   const auto [verb, arguments] =
       add_bench(parent, "integrators", "Distance from the exact motion against time, an integrator a curve", bench_integrators, exit_code);
-  verb->add_option("--k-stretch", arguments->options.stiffnesses, "Stiffnesses, N/m (default 60, 6000)")
-      ->delimiter(',')
-      ->check(CLI::PositiveNumber);
-  verb->add_option("--nodes", arguments->options.nodes, "Nodes of the square sheet (default 1681)")
-      ->expected(1)
-      ->check(CLI::PositiveNumber);
+  verb->add_option("--k-stretch", arguments->options.stiffnesses, "Stiffnesses, N/m (default 60, 6000)")->delimiter(',')->check(above(0));
+  verb->add_option("--nodes", arguments->options.nodes, "Nodes of the square sheet (default 1681)")->expected(1)->check(above(0));
 }
 
 void add_contact(CLI::App& parent, int& exit_code) {
@@ -132,10 +127,10 @@ void add_contact(CLI::App& parent, int& exit_code) {
       add_bench(parent, "contact", "What contact costs a step, by phase; or --stress: every contact scene and jittered copies", bench_contact,
                 exit_code);
   verb->add_flag("--full", arguments->options.full, "clump with 25,921 nodes, as in the paper (default 6,561)");
-  verb->add_option("--nodes", arguments->options.nodes, "Nodes of both sheets, a square number")->expected(1)->check(CLI::PositiveNumber);
+  verb->add_option("--nodes", arguments->options.nodes, "Nodes of both sheets, a square number")->expected(1)->check(above(0));
   verb->add_option("--stress", arguments->options.stress, "Run each contact scene and this many jittered copies, and report how they end")
-      ->check(CLI::Range(0, 1000));
-  verb->add_option("--frames", arguments->options.stress_frames, "Of each such run, whatever the scene says (default 200)")->check(CLI::PositiveNumber);
+      ->check(between(0, 1000));
+  verb->add_option("--frames", arguments->options.stress_frames, "Of each such run, whatever the scene says (default 200)")->check(above(0));
   verb->add_option("--scene", arguments->options.methods, "Only these scenes of the stress test")->delimiter(',');
   verb->add_option("--judge", arguments->options.judge,
                    "Let this program judge every frame of the stress test (the tests' build has one: tests/contact/judge/judge)");
@@ -158,7 +153,7 @@ void add_bench_verb(CLI::App& app, int& exit_code) {
   const auto frames =
       add_bench(*verb, "frames", "Paper, Section 3, 'improper U': iterations with three choices of U", bench_frames, exit_code);
   frames.verb->add_option("--tolerance", frames.arguments->options.tolerance, "Of the stop rule (default 1e-3)")
-      ->check(CLI::Range(1e-14, 1.0));
+      ->check(between(1e-14, 1.0));
   add_contact(*verb, exit_code);
   add_roofline(*verb, exit_code);
 }

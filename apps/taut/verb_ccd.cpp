@@ -102,11 +102,11 @@ void add_ccd_verb(CLI::App& app, int& exit_code) {
       ->required()
       ->check(CLI::IsMember({"vf", "ee"}));
   verb->add_option("--separation", options.minimum_separation, "m: nearer than this is a collision (default: 0, touching)")
-      ->check(CLI::Range(0.0, 1e100));
+      ->check(between(0.0, 1e100));
   verb->add_option("--tolerance", options.tolerance, "m: a near miss closer than this may be called a collision (default: 1e-10)")
-      ->check(CLI::Range(0.0, 1e100));
+      ->check(between(0.0, 1e100));
   verb->add_option("--max-checks", options.max_checks, "Planes tried for a query before it is called a collision (default: 1000)")
-      ->check(CLI::Range(0, 1000000000));
+      ->check(between(0, 1000000000));
   CLI::Option* json = verb->add_option("--json", arguments->json, "Write the answers to FILE; without FILE to stdout, instead of the lines")
                           ->expected(0, 1)
                           ->type_name("[FILE]");

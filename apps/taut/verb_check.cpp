@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include "counted.h"
+#include "taut/base/error.h"
 #include "taut/io/obj.h"
 #include "taut/scene/scene_file.h"
 #include "taut/scene/simulation.h"
@@ -9,8 +11,19 @@ namespace taut::app {
 
 namespace {
 
+// Not over what the scene is made of: a start drawn apart would become the cloth's rest shape.
+void refuse_own_mesh(const Scene& scene, const std::filesystem::path& out) {
+  std::error_code none;
+  const auto refuse = [&](const std::filesystem::path& mesh, const std::string& whose) {
+    if (!mesh.empty() && std::filesystem::equivalent(mesh, out, none))
+      throw InputError({out.string()}, fmt::format("is the mesh of {} itself; give another file with --out", whose));
+  };
+  for (const Cloth& cloth : scene.cloths) refuse(cloth.mesh, "cloth '" + cloth.name + "'");
+  for (const Solid& solid : scene.solids) refuse(solid.mesh, "solid '" + solid.name + "'");
+}
+
 // Where cloths start, an OBJ each: FILE.obj, or FILE_NAME.obj of several.
-void write_start(const ClothModel& cloth, const std::filesystem::path& out) {
+void write_start(const Scene& scene, const ClothModel& cloth, const std::filesystem::path& out) {
   for (const ClothPart& part : cloth.parts()) {
     TriangleMesh mesh;
     const auto nodes = std::span(cloth.surface().positions).subspan(part.first_node, part.node_count);
@@ -21,6 +34,7 @@ void write_start(const ClothModel& cloth, const std::filesystem::path& out) {
       mesh.triangles.push_back({t[0] - part.first_node, t[1] - part.first_node, t[2] - part.first_node});
     std::filesystem::path file = out;
     if (cloth.parts().size() > 1) file.replace_filename(out.stem().string() + "_" + part.name + ".obj");
+    refuse_own_mesh(scene, file);
     write_obj(file, mesh);
     fmt::print("start of cloth '{}': {}\n", part.name, file.string());
   }
@@ -47,12 +61,23 @@ int check(const std::string& path, std::vector<std::string> settings, bool untan
   const ClothModel& cloth = simulation.cloth();
   std::size_t springs = 0;
   for (const auto& model : cloth.springs()) springs += model->springs().size();
-  fmt::print("{}: no errors: {} cloths, {} nodes, {} springs, {} solids, {} steps\n", path, cloth.parts().size(), cloth.nodes(), springs,
-             simulation.scene().solids.size(), simulation.scene().time.frames * simulation.scene().time.steps_per_frame);
+  const TimeOptions& time = simulation.scene().time;
+  fmt::print("{}: no errors: {}, {}, {}, {}, {}\n", path, counted(cloth.parts().size(), "cloth"), counted(cloth.nodes(), "node"),
+             counted(springs, "spring"), counted(simulation.scene().solids.size(), "solid"),
+             counted(time.frames * time.steps_per_frame, "step"));
   if (simulation.scene().contact.untangle) say_untangled(simulation, path, out);
-  if (!out.empty()) write_start(cloth, out);
+  if (!out.empty()) write_start(simulation.scene(), cloth, out);
   for (const std::string& doubt : doubts) fmt::print("doubtful: {}\n", doubt);
   return 0;
+}
+
+CLI::Validator obj_file() {
+  return {[](const std::string& text) {
+            return std::filesystem::path(text).extension() == ".obj"
+                       ? std::string()
+                       : "'" + text + "' is no FILE.obj; the start is written as OBJ: give a name that ends in .obj";
+          },
+          ""};
 }
 
 }  // namespace
@@ -68,7 +93,8 @@ void add_check_verb(CLI::App& app, int& exit_code) {
   auto out = std::make_shared<std::string>();
   verb->add_option("--out", *out,
                    "Write where the cloth starts, after --untangle if that is given, as OBJ (of several cloths: FILE_NAME.obj)")
-      ->type_name("FILE.obj");
+      ->type_name("FILE.obj")
+      ->check(obj_file());
   verb->footer("Example: taut check scenes/ball.toml\nExit code 1 when the scene has errors; doubts do not count.");
   verb->callback([=, &exit_code] { exit_code = check(*scene, *settings, *untangle, *out); });
 }

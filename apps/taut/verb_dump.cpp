@@ -49,15 +49,15 @@ void add_dump_verb(CLI::App& app, int& exit_code) {
   CLI::App* verb = app.add_subcommand("dump", "Write the linear system of one step as files that any tool reads");
   auto arguments = std::make_shared<DumpArguments>();
   verb->add_option("SCENE", arguments->scene, "Scene file (TOML)")->required();
-  verb->add_option("--step", arguments->step, "The step whose system is written, from 1")->required()->check(CLI::Range(1, 1'000'000'000));
+  verb->add_option("--step", arguments->step, "The step whose system is written, from 1")->required()->check(between(1, 1'000'000'000));
   verb->add_option("--out", arguments->out, "Folder to write to; empty, new, or an earlier dump")->required();
-  verb->add_option("--solver", arguments->solver, "Linear solver, as solver.name in the scene");
-  verb->add_option("--tolerance", arguments->tolerance, "As solver.tolerance in the scene")->check(CLI::Range(1e-14, 0.5));
+  verb->add_option("--solver", arguments->solver, "Linear solver, as solver.name in the scene")->check(solver_name());
+  verb->add_option("--tolerance", arguments->tolerance, "As solver.tolerance in the scene")->check(between(1e-14, 0.5));
   verb->add_option("--set", arguments->settings, "Change a key of the scene: key=value; may be repeated")
       ->take_all()
       ->type_name("KEY=VALUE");
   verb->add_option("--threads", arguments->threads, "Threads to use (default: all processors); the results do not depend on it")
-      ->check(CLI::Range(1, 1024));
+      ->check(between(1, 1024));
   verb->add_flag("--quiet", arguments->quiet, "No progress and no report");
   verb->footer(
       "Example: taut dump scenes/ball.toml --set cloth.grid.nodes=[41,41] --step 60 --tolerance 1e-9 --out out/ball_60\n"

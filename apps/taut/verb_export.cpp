@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "counted.h"
 #include "frame_range.h"
 #include "taut/base/error.h"
 #include "taut/scene/sequence_export.h"
@@ -27,8 +28,12 @@ int export_frames(ExportArguments& arguments) {
   SequenceExport sequence(frames, options);
   sequence.add_frames_until(options.last);
   sequence.finish();
-  fmt::print("{} frames of {} cloths and {} solids written to {}\n", sequence.frames_added(), frames.cloth().parts().size(),
-             frames.scene().solids.size(), options.folder.string());
+  if (const auto others = sequence.files_of_other_frames(); !others.empty())
+    fmt::print(stderr,
+               "note: {} files of other frames stay in {} from an earlier export, such as {}; remove them if they do not belong here\n",
+               others.size(), options.folder.string(), others.front().filename().string());
+  fmt::print("{} of {} and {} written to {}\n", counted(sequence.frames_added(), "frame"), counted(frames.cloth().parts().size(), "cloth"),
+             counted(frames.scene().solids.size(), "solid"), options.folder.string());
   return 0;
 }
 
@@ -57,7 +62,7 @@ void add_export_verb(CLI::App& app, int& exit_code) {
       ->type_name("FIRST:LAST[:STEP]")
       ->check(frame_range_syntax());
   verb->add_option("--scale", arguments->options.scale, "Lengths in the files: 100 makes centimetres of metres (default: 1)")
-      ->check(CLI::PositiveNumber);
+      ->check(above(0));
   verb->add_option("--up", arguments->up, "Upward axis of the files: y turns (x, y, z) to (x, z, -y) (default: z; y for gltf)")
       ->check(CLI::IsMember({"y", "z"}));
   verb->footer(

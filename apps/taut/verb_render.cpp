@@ -121,6 +121,9 @@ bool wants_sheet(const RenderArguments& arguments, const fs::path& out) {
 }
 
 int render_result(RenderArguments arguments, bool size_given) {
+  if (arguments.frame && fs::path(arguments.out).extension() != ".png")
+    throw CLI::ValidationError("--frame",
+                               "a film has all frames, --frame chooses one of a still: give --out FILE.png, or --frames FIRST:LAST");
   if (arguments.threads > 0) set_thread_count(arguments.threads);
   const fs::path out = arguments.out;
   const ResultFrames result(arguments.folder);
@@ -133,7 +136,7 @@ int render_result(RenderArguments arguments, bool size_given) {
       frames.push_back(all[static_cast<std::size_t>(k)]);
     draw_contact_sheet(out, result.scene(), result.cloth(), result.results(), frames, picture_options(arguments));
   } else {
-    const int last = result.last_frame(), frame = arguments.frame.value_or(last);
+    const int last = last_frame_said(result), frame = arguments.frame.value_or(last);
     if (frame > last) throw InputError({arguments.folder}, fmt::format("has the frames 0 to {}; {} was asked for", last, frame));
     const std::vector<int> frames{frame};
     write_png(out, FramePictures(result.scene(), result.cloth(), result.results(), frames, picture_options(arguments)).draw(frame));
@@ -165,20 +168,20 @@ void add_render_verb(CLI::App& app, int& exit_code) {
       ->required()
       ->type_name("FILE.png|FILE.mp4|FOLDER")
       ->check(out_syntax());
-  CLI::Option* frame = verb->add_option("--frame", arguments->frame, "Frame of a still (default: the last)")->check(CLI::NonNegativeNumber);
+  CLI::Option* frame = verb->add_option("--frame", arguments->frame, "Frame of a still (default: the last)")->check(at_least(0));
   CLI::Option* size = verb->add_option("--size", arguments->size, "Pixels of a picture (default: 1280x720; of a sheet's pictures 480x400)")
                           ->type_name("WIDTHxHEIGHT")
                           ->check(size_syntax());
   verb->add_option("--samples", arguments->options.samples, "Rays a pixel: more is smoother and slower (default: 16)")
-      ->check(CLI::Range(1, 1024));
-  verb->add_option("--sheet", arguments->sheet, "So many frames side by side")->check(CLI::Range(1, 100))->excludes(frame);
+      ->check(between(1, 1024));
+  verb->add_option("--sheet", arguments->sheet, "So many frames side by side")->check(between(1, 100))->excludes(frame);
   verb->add_option("--frames", arguments->frames, "Of a film or sheet only these (default: all)")
       ->type_name("FIRST:LAST[:STEP]")
       ->check(frame_range_syntax())
       ->excludes(frame);
-  verb->add_option("--fps", arguments->frames_per_second, "Pictures a second of a film (default: 30)")->check(CLI::Range(1.0, 240.0));
+  verb->add_option("--fps", arguments->frames_per_second, "Pictures a second of a film (default: 30)")->check(between(1.0, 240.0));
   verb->add_option("--speed", arguments->speed, "Seconds of simulated time in a second of a film: 0.25 is slow motion (default: 1)")
-      ->check(CLI::Range(1e-4, 1e4));
+      ->check(between(1e-4, 1e4));
   verb->add_option("--from", arguments->from, "Where the camera is (default: as near as all is in view)")
       ->type_name("X,Y,Z")
       ->check(point_syntax());
@@ -187,13 +190,13 @@ void add_render_verb(CLI::App& app, int& exit_code) {
       ->check(point_syntax());
   verb->add_option("--fov", arguments->options.vertical_field_of_view_deg,
                    "Degrees from the bottom to the top of the picture (default: 28)")
-      ->check(CLI::Range(1.0, 170.0));
+      ->check(between(1.0, 170.0));
   CLI::Option* checker =
       verb->add_flag("--checker", arguments->checker, "Squares on the cloth from its texture coordinates, instead of lines");
   verb->add_flag("--plain", arguments->plain, "Neither squares nor lines on the cloth")->excludes(checker);
   verb->add_flag("--no-ground", arguments->no_ground, "No ground below");
   verb->add_flag("--frames-only", arguments->frames_only, "A film's pictures as PNG files, and the command that makes the film");
-  verb->add_option("--threads", arguments->threads, "Threads to use (default: all processors)")->check(CLI::Range(1, 1024));
+  verb->add_option("--threads", arguments->threads, "Threads to use (default: all processors)")->check(between(1, 1024));
   verb->footer(
       "Example: taut render out/ball --out ball.mp4\n"
       "Example: taut render out/ball --out ball.png --frame 40 --checker --from 1.5,-2.5,1.2 --at 0,0,0.5");

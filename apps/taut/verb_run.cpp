@@ -11,7 +11,7 @@ namespace {
 
 struct RunArguments {
   std::string scene, out, solver, export_format;
-  int frames = -1, threads = 0;
+  int frames = 0, threads = 0;
   std::vector<std::string> settings;
   bool quiet = false, json_lines = false, no_picture = false, untangle = false;
 };
@@ -19,7 +19,7 @@ struct RunArguments {
 int run_scene(const RunArguments& arguments) {
   if (arguments.threads > 0) set_thread_count(arguments.threads);
   std::vector<std::string> settings = arguments.settings;
-  if (arguments.frames >= 0) settings.push_back(fmt::format("time.frames={}", arguments.frames));
+  if (arguments.frames > 0) settings.push_back(fmt::format("time.frames={}", arguments.frames));
   if (!arguments.solver.empty()) settings.push_back("solver.name=" + arguments.solver);
   if (arguments.untangle) settings.push_back("contact.untangle=true");
   Scene scene = read_scene(arguments.scene, settings);
@@ -31,7 +31,8 @@ int run_scene(const RunArguments& arguments) {
   const ResultsFolder results(arguments.out.empty() ? std::filesystem::path("out") / std::filesystem::path(arguments.scene).stem()
                                                     : std::filesystem::path(arguments.out));
   Simulation simulation(std::move(scene));
-  results.start(simulation);
+  for (const std::string& note : results.start(simulation))
+    if (style != ProgressStyle::quiet) fmt::print(stderr, "note: {}\n", note);
   return simulate(simulation, results, {style, !arguments.no_picture, arguments.export_format}, 0);
 }
 
@@ -42,10 +43,11 @@ void add_run_verb(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<RunArguments>();
   verb->add_option("SCENE", arguments->scene, "Scene file (TOML)")->required();
   verb->add_option("--out", arguments->out, "Folder for the results (default: out/SCENE)");
-  verb->add_option("--frames", arguments->frames, "Stop after this many frames")->check(CLI::NonNegativeNumber);
+  verb->add_option("--frames", arguments->frames, "Frames to write after the first, instead of the scene's time.frames: fewer or more")
+      ->check(between(1, 1'000'000));
   verb->add_option("--threads", arguments->threads, "Threads to use (default: all processors); the results do not depend on it")
-      ->check(CLI::Range(1, 1024));
-  verb->add_option("--solver", arguments->solver, "Linear solver, as solver.name in the scene");
+      ->check(between(1, 1024));
+  verb->add_option("--solver", arguments->solver, "Linear solver, as solver.name in the scene")->check(solver_name());
   verb->add_option("--set", arguments->settings, "Change a key of the scene: key=value, e.g. cloth.k_stretch=600; may be repeated")
       ->take_all()
       ->type_name("KEY=VALUE");

@@ -158,20 +158,20 @@ void add_solve_verb(CLI::App& app, int& exit_code) {
                            ->take_all();
   verb->add_flag("--all", arguments->all, "All solvers of this program")->excludes(names);
   verb->add_option("--tolerance", arguments->options.tolerance, "Of the iterative methods' stop rule (default: 1e-6)")
-      ->check(CLI::Range(1e-16, 1.0));
+      ->check(between(1e-16, 1.0));
   verb->add_option("--max-iterations", arguments->options.max_iterations, "Default: ten times the unknowns, at least 1000")
-      ->check(CLI::PositiveNumber);
+      ->check(above(0));
   verb->add_option("--reordering", arguments->options.reordering, "core_pcg: reorder `vectors` in each iteration or `matrix` once")
       ->check(CLI::IsMember({"vectors", "matrix"}));
   verb->add_option("--residual", arguments->residual,
                    "Converged means this true relative residual too, 2-norm; 0: the stop rule is enough (default with --matrix: the "
                    "tolerance, else 0)")
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(between(0.0, 1.0));
   verb->add_option("--time-limit", arguments->limits.seconds, "Seconds for one solve of an iterative method (default: 60)")
-      ->check(CLI::PositiveNumber);
+      ->check(above(0));
   verb->add_option("--repeat", arguments->limits.repeats,
                    "Solves whose median times are given (default: 5, or 1 when one takes over 0.2 s)")
-      ->check(CLI::Range(1, 1000));
+      ->check(between(1, 1000));
   CLI::Option* json = verb->add_option("--json", arguments->json, "Write the figures to FILE; without FILE to stdout, instead of the table")
                           ->expected(0, 1)
                           ->type_name("[FILE]");
@@ -180,7 +180,7 @@ void add_solve_verb(CLI::App& app, int& exit_code) {
       ->type_name("FILE");
   verb->add_option("--plot", arguments->plot, "Draw A-norm error against time, a curve a method")->type_name("FILE.svg|png");
   verb->add_flag("--spectrum", arguments->spectrum, "Measure the core's eigenvalues (Lanczos) and print them beside their bound");
-  verb->add_option("--threads", arguments->threads, "Threads to use (default: all processors)")->check(CLI::Range(1, 1024));
+  verb->add_option("--threads", arguments->threads, "Threads to use (default: all processors)")->check(between(1, 1024));
   verb->footer(
       "Example: taut solve out/ball_60 --solver core_pcg,mpcg,cholmod --tolerance 1e-3\n"
       "Example: taut solve --matrix A.mtx --rhs b.mtx --all --json out/solvers.json --plot out/solvers.svg\n"

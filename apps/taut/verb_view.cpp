@@ -48,7 +48,7 @@ void add_view_verb(CLI::App& app, int& exit_code) {
   CLI::App* verb = app.add_subcommand("view", "Look at a result in the browser, live while it is computed");
   auto arguments = std::make_shared<ViewArguments>();
   verb->add_option("DIR", arguments->folder, "Results folder of `taut run`, finished, running or still empty")->required();
-  verb->add_option("--port", arguments->port, "Port of 127.0.0.1 to listen on (default: a free one)")->check(CLI::Range(1, 65535));
+  verb->add_option("--port", arguments->port, "Port of 127.0.0.1 to listen on (default: a free one)")->check(between(1, 65535));
   verb->add_flag("--no-open", arguments->no_open, "Print the address, open no browser");
   verb->footer(
       "Example: taut view out/ball\n"

@@ -4,6 +4,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "argument_checks.h"
+
 namespace taut::app {
 
 void add_run_verb(CLI::App& app, int& exit_code);

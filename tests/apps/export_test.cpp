@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <map>
+#include <tuple>
 
 #include "program.h"
 
@@ -33,7 +35,7 @@ TEST(Export, WritesClothsAndSolids) {
   run_small(folder, {"--frames", "2"});
   const ProgramEnd end = taut(folder, {"export", "r", "--format", "obj"});
   ASSERT_EQ(end.exit_code, 0) << end.err;
-  EXPECT_EQ(end.out, "3 frames of 1 cloths and 1 solids written to r/obj\n");
+  EXPECT_EQ(end.out, "3 frames of 1 cloth and 1 solid written to r/obj\n");
   EXPECT_EQ(end.err, "");
   EXPECT_EQ(names_in(folder / "r/obj"), (Names{"sheet_000000.obj", "sheet_000001.obj", "sheet_000002.obj", "solid_0.obj"}));
   const Names obj = lines_of(read_text(folder / "r/obj/sheet_000002.obj"));
@@ -42,6 +44,19 @@ TEST(Export, WritesClothsAndSolids) {
   ASSERT_EQ(taut(folder, {"export", "r", "--format", "pc2", "--out", "points"}).exit_code, 0);
   EXPECT_EQ(names_in(folder / "points"), (Names{"sheet.obj", "sheet.pc2", "solid_0.obj"}));
   EXPECT_EQ(read_text(folder / "points/sheet.pc2").size(), 32u + 3 * 72 * 12);
+}
+
+// A PC2 file says how many frames are between two samples: chosen frames must not play faster.
+TEST(Export, PointCachesOfChosenFramesPlayAtTheirSpeed) {
+  const WorkFolder folder;
+  run_small(folder);
+  for (const auto& [range, first, rate] : {std::tuple<const char*, float, float>{"1:5:2", 1.0F, 2.0F}, {"0:6", 0.0F, 1.0F}}) {
+    ASSERT_EQ(taut(folder, {"export", "r", "--format", "pc2", "--out", "points", "--frames", range}).exit_code, 0);
+    float header[2] = {};
+    std::memcpy(header, read_text(folder / "points/sheet.pc2").data() + 20, sizeof(header));
+    EXPECT_EQ(header[0], first) << range;
+    EXPECT_EQ(header[1], rate) << range;
+  }
 }
 
 TEST(Export, FramesAreChosen) {

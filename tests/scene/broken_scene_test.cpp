@@ -51,6 +51,12 @@ std::vector<Broken> broken_scenes() {
        sheet + "[[cloth.pin]]\nedges = [\"u0\"]\ntime = 3\n",
        "6:1",
        {"unknown key 'time' in cloth.0.pin.0", "write [time]"}},
+      {"key_of_another_shape", ball + "mesh = \"x.obj\"\n", "7:1", {"solid.0.mesh is only for a mesh"}},
+      {"pin_of_nothing", sheet + "[[cloth.pin]]\nnodes = []\n", "5:9", {"cloth.0.pin.0.nodes: empty", "remove the pin"}},
+      {"cloth_out_of_this_world",
+       "[[cloth]]\ngrid = { nodes = [3, 4], origin = [1e300, 0, 0], u = [1, 0, 0], v = [0, 1, 0] }\ndensity = 0.2\n",
+       "2:36",
+       {"cloth.0.grid.origin = 1e+300 m is out of range", "-1e+06 to 1e+06 m"}},
       // Types.
       {"text_for_number",
        sheet + "[time]\nstep = \"5ms\"\n",

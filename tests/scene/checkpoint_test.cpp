@@ -15,6 +15,7 @@ namespace {
 Checkpoint sample() {
   Checkpoint c;
   c.scene = "title = \"a \\\"quoted\\\" µ\"\n";
+  c.files = {0, ~std::uint64_t{0}, 42};
   c.steps = 123, c.frame = 45;
   c.state.time = 1.0 / 3.0;
   c.state.has_previous = true;
@@ -49,6 +50,7 @@ std::string refusal(const std::string& bytes) {
 TEST(Checkpoint, ComesBackWhole) {
   const Checkpoint c = sample(), again = parse_checkpoint(bytes_of(c), "state.bin");
   EXPECT_EQ(again.scene, c.scene);
+  EXPECT_EQ(again.files, c.files);
   EXPECT_EQ(again.steps, 123);
   EXPECT_EQ(again.frame, 45);
   EXPECT_EQ(again.state.time, c.state.time);

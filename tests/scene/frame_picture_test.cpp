@@ -92,6 +92,23 @@ TEST_F(PictureOfAResult, ClothBallAndGroundAreSeenWithoutBlackOrClipping) {
 // The far ball would make the cloth a dot.
 TEST_F(PictureOfAResult, AMovingSolidDoesNotTakeTheCameraAway) { EXPECT_GT(share(draw(0), is_blue), 0.05); }
 
+// Without a plane the ground must hide no solid: a box too large to belong into the view, and a body whose feet end just below zero.
+TEST_F(PictureOfAResult, TheGroundHidesNoSolid) {
+  struct Case {
+    const char* solid;
+    double ground;
+  };
+  for (const auto& [solid, ground] :
+       {Case{"translation = [0, 0, 0.4]\nsize = [3, 3, 0.8]\n", 0.0}, Case{"translation = [0, 0, 0.3994]\nsize = [3, 3, 0.8]\n", -6e-4}}) {
+    const std::string text = std::string(scene_text) + "[[solid]]\nshape = \"box\"\n" + solid;
+    const Scene scene = read_scene_text(text, folder() / "scene.toml");
+    const std::vector<int> frames{0, 4};
+    const FramePictures pictures(scene, simulation_.cloth(), results_, frames, {});
+    ASSERT_TRUE(pictures.ground().has_value());
+    EXPECT_NEAR(*pictures.ground(), ground, 1e-12);
+  }
+}
+
 TEST_F(PictureOfAResult, FoldsAreReadable) {
   // A wave makes light and shade: neighbouring cloth pixels span more brightness than on the flat sheet.
   PictureOptions plain;

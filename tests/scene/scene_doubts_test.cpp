@@ -27,6 +27,11 @@ struct Advice {
   std::vector<std::string> bad, good;  // --set of ball.toml
 };
 
+// The pin is carried up by so many metres in the first hundredth of a second.
+std::string pull(const std::string& metres) {
+  return "cloth.0.pin.0.key_frames=[{ time = 0 }, { time = 0.01, translation = [0, 0, " + metres + "] }]";
+}
+
 class Doubt : public testing::TestWithParam<Advice> {};
 
 TEST_P(Doubt, AppearsAndGoesAway) {
@@ -52,6 +57,18 @@ INSTANTIATE_TEST_SUITE_P(
         Advice{"core_pcg may take", {"cloth.k_shear=300"}, {"cloth.k_shear=300", "solver.core=auto"}},
         Advice{"core_pcg may take", {"cloth.k_shear=300"}, {"cloth.k_shear=300", "time.step=2e-4"}},
         Advice{"hang like rubber", {"cloth.k_stretch=1"}, {"cloth.k_stretch=60"}},
+        Advice{
+            "k_stretch = 0: nothing keeps it together", {"cloth.k_stretch=0", "cloth.k_shear=0", "cloth.k_bend=0"}, {"cloth.k_stretch=60"}},
+        Advice{"stretch by about", {pull("5")}, {pull("0.02")}},
+        Advice{"move nothing", {"cloth.0.pin.0.key_frames=[{ time = 1, translation = [0, 0, 1] }]"}, {pull("0.02")}},
+        Advice{
+            "both hold node 0",
+            {pull("0.02"),
+             "cloth.0.pin=[{ edges = [\"u0\"], key_frames = [{ time = 0 }, { time = 1, translation = [0, 0, 0.1] }] }, { nodes = [0] }]"},
+            {"cloth.0.pin=[{ edges = [\"u0\"] }, { nodes = [0] }]"}},
+        Advice{"held by a pin, starts inside solid",
+               {"solid.translation=[0,-0.1,0.5]", "cloth.0.pin=[{ nodes = [3280] }]"},
+               {"solid.translation=[0,-0.3,0.5]", "cloth.0.pin=[{ nodes = [3280] }]"}},
         Advice{"jitter", {"cloth.jitter=0.01"}, {"cloth.jitter=0.001"}},
         Advice{"push its own neighbours", {"contact.thickness=0.01"}, {"contact.thickness=0.005"}},
         Advice{"start inside solid", {"solid.translation=[0,-0.1,0.5]"}, {"solid.translation=[0,-0.3,0.5]"}},

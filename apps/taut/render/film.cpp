@@ -141,9 +141,29 @@ class Mp4Writer : public FilmWriter {
   pid_t child_ = -1;
 };
 
+bool is_picture_name(const std::string& name) {
+  return name.size() == 10 && name.ends_with(".png") && name.find_first_not_of("0123456789") == 6;
+}
+
+// Those of an earlier film that was longer would become part of the new one.
+void clear_pictures(const fs::path& folder) {
+  if (!fs::exists(folder)) return;
+  if (!fs::is_directory(folder)) throw InputError({folder.string()}, "is a file; give a folder for the pictures with --out, or FILE.png");
+  std::vector<fs::path> pictures;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (!is_picture_name(entry.path().filename().string()))
+      throw InputError({folder.string()}, fmt::format("holds '{}', which is no picture of a film; give an empty or new folder with --out",
+                                                      entry.path().filename().string()));
+    pictures.push_back(entry.path());
+  }
+  for (const fs::path& picture : pictures) fs::remove(picture);
+}
+
 class PngWriter : public FilmWriter {
  public:
-  PngWriter(fs::path folder, double rate, fs::path film) : folder_(std::move(folder)), rate_(rate), film_(std::move(film)) {}
+  PngWriter(fs::path folder, double rate, fs::path film) : folder_(std::move(folder)), rate_(rate), film_(std::move(film)) {
+    clear_pictures(folder_);
+  }
   void add(const Image& picture) override { write_png(folder_ / fmt::format("{:06}.png", pictures_++), picture); }
   std::string finish() override {
     std::string command = fmt::format("ffmpeg -r {} -i '{}'", rate_, (folder_ / "%06d.png").string());

@@ -23,7 +23,9 @@ class Pc2Sequence : public SequenceWriter {
       const SequenceObject& object = objects()[k];
       if (is_first()) {
         write_obj(file(object.stem + ".obj"), mesh_at(object, frame[k]), ObjDigits::of_float);
-        if (object.moves) caches_[k] = std::make_unique<Pc2Writer>(file(object.stem + ".pc2"), object.points, static_cast<float>(number));
+        if (object.moves)
+          caches_[k] = std::make_unique<Pc2Writer>(file(object.stem + ".pc2"), object.points, static_cast<float>(number),
+                                                   static_cast<float>(options().frame_stride));
       }
       if (caches_[k]) caches_[k]->add_sample(frame[k].points);
     }

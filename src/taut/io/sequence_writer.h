@@ -49,6 +49,7 @@ struct SequenceOptions {
   std::string title;
   int first_frame = 0;
   int frames = 1;               // that will come at most, for formats that are limited in size
+  int frame_stride = 1;         // from one frame that is added to the next
   double frame_interval = 0.0;  // s from one frame number to the next
   UpAxis up = UpAxis::z;
   double metres_per_unit = 1.0;

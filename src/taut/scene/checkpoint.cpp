@@ -5,6 +5,7 @@
 #include <ostream>
 #include <type_traits>
 
+#include "taut/base/checksum.h"
 #include "taut/base/error.h"
 
 namespace taut {
@@ -13,12 +14,12 @@ static_assert(std::endian::native == std::endian::little, "checkpoints are littl
 
 namespace {
 
-constexpr char magic[8] = {'T', 'A', 'U', 'T', 'C', 'K', 'P', '3'};
+constexpr char magic[8] = {'T', 'A', 'U', 'T', 'C', 'K', 'P', '4'};
 
 std::uint64_t checksum(std::string_view bytes) {
-  std::uint64_t hash = 0xcbf29ce484222325ull;
-  for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ull;
-  return hash;
+  Checksum sum;
+  sum.add(bytes);
+  return sum.value();
 }
 
 class Writer {
@@ -92,6 +93,7 @@ void transfer(Archive& archive, Content& c) {
   archive.list(c.solver_memory);
   archive.list(c.zones.node);
   archive.list(c.zones.rides);
+  archive.list(c.files);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <random>
 
+#include "taut/base/checksum.h"
 #include "taut/base/error.h"
 #include "taut/force/cloth_springs.h"
 #include "taut/force/explicit_split.h"
@@ -28,6 +29,8 @@ Index corner_node(const GridShape& g, const std::string& name) {
   return g.node(name.starts_with("u1") ? g.nu - 1 : 0, name.ends_with("v1") ? g.nv - 1 : 0);
 }
 
+}  // namespace
+
 std::vector<Index> selected_nodes(const Cloth& cloth, const NodeSelection& where) {
   std::vector<Index> nodes = where.nodes;
   const GridShape& g = cloth.grid;
@@ -48,7 +51,12 @@ std::vector<Index> selected_nodes(const Cloth& cloth, const NodeSelection& where
   return nodes;
 }
 
-}  // namespace
+std::uint64_t sum_of(const TriangleMesh& mesh) {
+  Checksum sum;
+  sum.add_items(std::span<const Vec3>(mesh.positions));
+  sum.add_items(std::span<const Triangle>(mesh.triangles));
+  return sum.value();
+}
 
 Vec3 PinnedNodes::target(std::size_t k, double time) const {
   if (path.key_frames.empty()) return start[k];
@@ -78,8 +86,13 @@ ClothModel::ClothModel(const Scene& scene) {
 
 void ClothModel::add_cloth(const Cloth& cloth, const Scene& scene, std::vector<double>& masses) {
   TriangleMesh mesh = rest_shape(cloth, scene.folder);
-  ClothPart part{cloth.name, nodes(), static_cast<Index>(mesh.positions.size()), static_cast<Index>(surface_.triangles.size()),
-                 static_cast<Index>(mesh.triangles.size())};
+  ClothPart part{cloth.name,
+                 nodes(),
+                 static_cast<Index>(mesh.positions.size()),
+                 static_cast<Index>(surface_.triangles.size()),
+                 static_cast<Index>(mesh.triangles.size()),
+                 0};
+  if (cloth.from_file) part.file_sum = sum_of(mesh);
   // Rest lengths are those of the shape before placement and jitter, which only say where it starts.
   auto springs = cloth.is_grid() ? grid_springs(cloth.grid, mesh.positions, cloth.material, part.first_node, cloth.name)
                                  : mesh_springs(mesh, cloth.material, part.first_node, cloth.name);
@@ -113,7 +126,10 @@ void ClothModel::add_pins(const Cloth& cloth, const ClothPart& part) {
     pinned.release = pin.release;
     for (const Index node : selected_nodes(cloth, pin.where)) {
       if (node < 0 || node >= part.node_count)
-        throw InputError(fmt::format("cloth '{}': a pin holds node {}, but its nodes are 0 to {}", cloth.name, node, part.node_count - 1));
+        throw InputError(pin.nodes_at,
+                         fmt::format("cloth '{}': a pin holds node {}, but its nodes are 0 to {}; name nodes from 0, vertex 1 of a file is "
+                                     "node 0",
+                                     cloth.name, node, part.node_count - 1));
       pinned.nodes.push_back(part.first_node + node);
       pinned.start.push_back(start_.x[part.first_node + node]);
     }

@@ -16,7 +16,14 @@ struct ClothPart {
   std::string name;
   Index first_node = 0, node_count = 0;
   Index first_triangle = 0, triangle_count = 0;
+  std::uint64_t file_sum = 0;  // of what its mesh file holds (base/checksum.h); 0: it has none
 };
+
+// Of vertices and triangles, what a simulation takes from a mesh file (base/checksum.h).
+std::uint64_t sum_of(const TriangleMesh& mesh);
+
+// Ascending, each once.
+std::vector<Index> selected_nodes(const Cloth& cloth, const NodeSelection& where);
 
 // A pin's nodes and their places at time 0.
 struct PinnedNodes {

@@ -26,11 +26,13 @@ std::string advice(const std::string& problem) {
 
 }  // namespace
 
-std::string located(const toml::source_region& where, const std::string& message) {
+SourcePlace source_place(const toml::source_region& where) {
   const std::string file = where.path ? *where.path : std::string();
-  if (file.starts_with("--set")) return located(SourcePlace{file}, message);
-  return located(SourcePlace{file, static_cast<int>(where.begin.line), static_cast<int>(where.begin.column)}, message);
+  if (file.starts_with("--set")) return {file};
+  return {file, static_cast<int>(where.begin.line), static_cast<int>(where.begin.column)};
 }
+
+std::string located(const toml::source_region& where, const std::string& message) { return located(source_place(where), message); }
 
 void Complaints::add(const toml::source_region& where, const std::string& message) {
   // Changes from the command line come after those of the file.

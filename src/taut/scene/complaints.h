@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "taut/base/error.h"
+
 namespace taut {
 
 class Complaints {
@@ -25,6 +27,7 @@ class Complaints {
   std::vector<Complaint> all_;
 };
 
+SourcePlace source_place(const toml::source_region& where);
 // "FILE:LINE:COLUMN: message", or "--set key=value: message".
 std::string located(const toml::source_region& where, const std::string& message);
 

@@ -55,6 +55,17 @@ void add_solids_in_view(const SolidShapes& solids, std::span<const double> times
   }
 }
 
+// Of cloths and solids, a ground that hid some of them would be worse than one that is far away.
+double lowest_of(const SolidShapes& solids, std::span<const double> times, std::span<const Vec3> points) {
+  double lowest = box_of(points).min().z();
+  for (std::size_t k = 0; k < solids.size(); ++k) {
+    if (solids.solid(k).shape == SolidShape::plane) continue;
+    for (const double time : solids.moves(k) ? times : times.first(1))
+      lowest = std::min(lowest, box_of(solids.at(k, time).mesh.positions).min().z());
+  }
+  return lowest;
+}
+
 bool has_texcoords(std::span<const Vec2> texcoords) {
   return std::any_of(texcoords.begin(), texcoords.end(), [&](const Vec2& uv) { return uv != texcoords.front(); });
 }
@@ -105,12 +116,13 @@ FramePictures::FramePictures(const Scene& scene, const ClothModel& cloth, const 
     points.insert(points.end(), x.begin(), x.end());
     times.push_back(time_of(frames[static_cast<std::size_t>(k)]));
   }
-  add_solids_in_view(SolidShapes(scene, 24), times, points);
+  const SolidShapes coarse(scene, 24);
+  add_solids_in_view(coarse, times, points);
   render_.width = options.width;
   render_.height = options.height;
   render_.samples = options.samples;
   look_at(points);
-  if (options.ground) place_ground(points);
+  if (options.ground) place_ground(points, lowest_of(coarse, times, points));
 }
 
 void FramePictures::look_at(const std::vector<Vec3>& points) {
@@ -129,15 +141,17 @@ void FramePictures::look_at(const std::vector<Vec3>& points) {
   }
 }
 
-void FramePictures::place_ground(const std::vector<Vec3>& points) {
+void FramePictures::place_ground(const std::vector<Vec3>& points, double lowest) {
   const BoundingBox box = box_of(points);
   for (std::size_t k = 0; k < solids_.size() && plane_drawn_as_ground_ < 0; ++k)
     if (is_level_plane(solids_, k)) plane_drawn_as_ground_ = static_cast<Index>(k);
-  const double size = box.sizes().maxCoeff(), lowest = box.min().z();
+  // What stands on the ground may end a rounding, or the cut of a mesh, below it.
+  constexpr double hair = 2e-3;
+  const double size = box.sizes().maxCoeff();
   if (plane_drawn_as_ground_ >= 0)
     render_.ground = solids_.solid(static_cast<std::size_t>(plane_drawn_as_ground_)).pose(0.0).translation.z();
-  else if (lowest >= 0.0 && lowest <= size)
-    render_.ground = 0.0;
+  else if (lowest >= -hair * size && lowest <= size)
+    render_.ground = std::min(0.0, lowest);
   else
     render_.ground = lowest - 0.03 * size;
 }
@@ -161,7 +175,7 @@ void draw_contact_sheet(const std::filesystem::path& path, const Scene& scene, c
   const FramePictures pictures(scene, cloth, results, frames, options);
   std::vector<Tile> tiles;
   for (const int frame : frames) tiles.push_back({pictures.draw(frame), fmt::format("t = {:.3f} s", pictures.time_of(frame))});
-  write_contact_sheet(path, tiles, fmt::format("{}   ({} nodes)", scene.title, cloth.nodes()));
+  write_contact_sheet(path, tiles, fmt::format("{}{}({} nodes)", scene.title, scene.title.empty() ? "" : "   ", cloth.nodes()));
 }
 
 }  // namespace taut

@@ -4,7 +4,8 @@
 //
 // Camera: given, or the closest one in the usual direction that has the cloths of all chosen frames in view, and the solids that stand
 // still and are not much larger than they. A moving solid may fly in and out. Ground: a level plane of the scene; else z = 0 if all is
-// above it and not far (within the size of what is in view); else just below everything.
+// above it, to a hair, and not far (within the size of what is in view); else just below everything: cloths and all solids but planes, in
+// view or not.
 
 #include <optional>
 
@@ -36,11 +37,13 @@ class FramePictures {
                 const PictureOptions& options);
 
   Image draw(int frame) const;
+  // Its height, m; none without PictureOptions::ground.
+  std::optional<double> ground() const { return render_.ground; }
   double time_of(int frame) const { return frame * scene_.time.step * scene_.time.steps_per_frame; }
 
  private:
   void look_at(const std::vector<Vec3>& points);
-  void place_ground(const std::vector<Vec3>& points);
+  void place_ground(const std::vector<Vec3>& points, double lowest);
 
   const Scene& scene_;
   SolidShapes solids_;

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "taut/base/checksum.h"
 #include "taut/base/error.h"
 #include "taut/io/mesh_file.h"
 #include "taut/io/motion_file.h"
 #include "taut/mesh/topology.h"
+#include "taut/scene/cloth_model.h"
 
 namespace taut {
 
@@ -29,10 +31,15 @@ MeshSolid::MeshSolid(const Solid& solid, const std::filesystem::path& folder) : 
   const MeshFaults faults = find_faults(mesh_);
   for (const Index triangle : faults.repeated_vertex)
     throw InputError({found(solid.mesh, folder).string()}, "triangle " + std::to_string(triangle + 1) + " names a vertex twice; remove it");
+  mesh_sum_ = sum_of(mesh_);
   turn_and_scale(mesh_.positions, solid_);
-  if (solid_.motion.empty()) return;
-  samples_ = read_motion(found(solid_.motion, folder), vertices());
-  for (auto& sample : samples_) turn_and_scale(sample, solid_);
+  if (!solid_.motion.empty()) samples_ = read_motion(found(solid_.motion, folder), vertices());
+  Checksum motion;
+  for (auto& sample : samples_) {
+    motion.add_items(std::span<const Vec3>(sample));
+    turn_and_scale(sample, solid_);
+  }
+  motion_sum_ = motion.value();
 }
 
 Vec3 MeshSolid::local(std::size_t vertex, double time) const {

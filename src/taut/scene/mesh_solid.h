@@ -18,6 +18,9 @@ class MeshSolid {
   const Solid& solid() const { return solid_; }
   const std::vector<Triangle>& triangles() const { return mesh_.triangles; }
   Index vertices() const { return static_cast<Index>(mesh_.positions.size()); }
+  // Of what the files hold (base/checksum.h).
+  std::uint64_t mesh_sum() const { return mesh_sum_; }
+  std::uint64_t motion_sum() const { return motion_sum_; }
   // m, at this time (s), one a vertex.
   void positions(double time, std::span<Vec3> x) const;
 
@@ -27,6 +30,7 @@ class MeshSolid {
   Solid solid_;
   TriangleMesh mesh_;
   std::vector<std::vector<Vec3>> samples_;
+  std::uint64_t mesh_sum_ = 0, motion_sum_ = 0;
 };
 
 }  // namespace taut

@@ -10,6 +10,7 @@
 #include "taut/base/file.h"
 #include "taut/base/file_lock.h"
 #include "taut/io/npy.h"
+#include "taut/io/sequence_writer.h"
 #include "taut/scene/checkpoint.h"
 #include "taut/scene/scene_file.h"
 #include "taut/scene/solid_shapes.h"
@@ -90,17 +91,65 @@ void write_mesh_solids(const Scene& scene, const fs::path& folder) {
   }
 }
 
+std::vector<std::string> replaced_by(const std::string& scene, const ResultsFolder& results) {
+  std::vector<std::string> said;
+  const fs::path& folder = results.folder();
+  if (!fs::exists(results.scene_file())) return said;
+  const std::string before = read_file(results.scene_file());
+  if (before == scene) return said;
+  const auto title = [](const std::string& text) {
+    constexpr std::string_view key = "title = ";
+    return text.starts_with(key) ? text.substr(key.size(), text.find('\n') - key.size()) : std::string("without a title");
+  };
+  said.push_back(fmt::format("{} held the result of another scene or of other settings ({}, {} frames); it is replaced", folder.string(),
+                             title(before), results.frame_count()));
+  for (const SequenceFormat& format : sequence_formats())
+    if (fs::is_directory(folder / format.name))
+      said.push_back(
+          fmt::format("{} holds an export of the result that is replaced; export anew, or remove it", (folder / format.name).string()));
+  return said;
+}
+
+// "NAME.tmp1234", as write_file leaves it when the process is killed.
+void remove_unfinished_in(const fs::path& folder, const std::function<bool(const std::string& name)>& ours) {
+  std::vector<fs::path> left;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    const std::size_t mark = name.rfind(".tmp");
+    const bool numbered =
+        mark != std::string::npos && mark + 4 < name.size() && name.find_first_not_of("0123456789", mark + 4) == std::string::npos;
+    if (numbered && ours(name.substr(0, mark))) left.push_back(entry.path());
+  }
+  for (const fs::path& file : left) fs::remove(file);
+}
+
+std::vector<std::uint64_t> sums_of(const std::vector<InputFile>& files) {
+  std::vector<std::uint64_t> sums;
+  for (const InputFile& file : files) sums.push_back(file.sum);
+  return sums;
+}
+
+// A scene's text but for the line that says how many frames there shall be.
+std::string without_length(const std::string& scene) {
+  constexpr std::string_view key = "\nframes = ";
+  const std::size_t begin = scene.find(key);
+  if (begin == std::string::npos) return scene;
+  return scene.substr(0, begin) + scene.substr(scene.find('\n', begin + 1));
+}
+
 }  // namespace
 
 fs::path ResultsFolder::frame_file(int frame) const { return folder_ / "frames" / fmt::format("{:06}.npy", frame); }
 
 fs::path ResultsFolder::contact_file(int frame) const { return folder_ / "frames" / fmt::format("contact_{:06}.npy", frame); }
 
-void ResultsFolder::start(const Simulation& simulation) const {
+std::vector<std::string> ResultsFolder::start(const Simulation& simulation) const {
   refuse_foreign_folder(folder_);
   refuse_running();
+  const std::string scene = scene_to_toml(simulation.scene());
+  std::vector<std::string> replaced = replaced_by(scene, *this);
   for (const char* name : own_names) fs::remove_all(folder_ / name);
-  write_file(scene_file(), scene_to_toml(simulation.scene()));
+  write_file(scene_file(), scene);
   const TriangleMesh& surface = simulation.cloth().surface();
   std::vector<std::int32_t> triangles;
   for (const Triangle& t : surface.triangles) triangles.insert(triangles.end(), t.begin(), t.end());
@@ -113,6 +162,18 @@ void ResultsFolder::start(const Simulation& simulation) const {
   write_stretch_springs(simulation.cloth(), folder_ / "frames");
   write_mesh_solids(simulation.scene(), folder_ / "frames");
   write_file(folder_ / "frames" / "cloths.json", cloths_json(simulation.cloth()));
+  return replaced;
+}
+
+void ResultsFolder::change_length(const Simulation& simulation) const {
+  write_file(scene_file(), scene_to_toml(simulation.scene()));
+  write_mesh_solids(simulation.scene(), folder_ / "frames");
+}
+
+void ResultsFolder::remove_unfinished() const {
+  for (const fs::path& folder : {folder_ / "frames", folder_ / "checkpoint"})
+    if (fs::exists(folder)) remove_unfinished_in(folder, [](const std::string&) { return true; });
+  remove_unfinished_in(folder_, [](const std::string& name) { return std::ranges::find(own_names, name) != std::end(own_names); });
 }
 
 void ResultsFolder::refuse_running() const {
@@ -138,6 +199,15 @@ int ResultsFolder::frame_count() const {
   return count;
 }
 
+bool ResultsFolder::has_gap() const {
+  const std::string missing = frame_file(frame_count()).filename().string();
+  if (!fs::exists(folder_ / "frames")) return false;
+  return std::ranges::any_of(fs::directory_iterator(folder_ / "frames"), [&](const fs::directory_entry& entry) {
+    const std::string name = entry.path().filename().string();
+    return name.size() == missing.size() && name.ends_with(".npy") && name.find_first_not_of("0123456789") == 6 && name > missing;
+  });
+}
+
 void ResultsFolder::remove_frames_after(int frame) const {
   for (int f = frame + 1; fs::exists(frame_file(f)); ++f) {
     fs::remove(frame_file(f));
@@ -153,22 +223,30 @@ void ResultsFolder::write_checkpoint(const Simulation& simulation, int frame) co
                               simulation.state(),
                               simulation.contact().state(),
                               simulation.stepper().solver().memory(),
-                              surface_contact ? surface_contact->state() : ZoneState{}};
+                              surface_contact ? surface_contact->state() : ZoneState{},
+                              sums_of(simulation.input_files())};
   write_file(checkpoint_file(), [&](std::ostream& out) { write(out, checkpoint); });
 }
 
-int ResultsFolder::read_checkpoint(Simulation& simulation) const {
+CheckpointPlace ResultsFolder::read_checkpoint(Simulation& simulation) const {
   Checkpoint checkpoint = parse_checkpoint(read_file(checkpoint_file()), checkpoint_file().string());
-  if (checkpoint.scene != scene_to_toml(simulation.scene()))
+  const std::string scene = scene_to_toml(simulation.scene());
+  if (without_length(checkpoint.scene) != without_length(scene))
     throw InputError({checkpoint_file().string()},
                      fmt::format("belongs to another scene than {}; run the scene anew with `taut run`", scene_file().string()));
-  if (static_cast<Index>(checkpoint.state.x.size()) != simulation.cloth().nodes())
+  const std::vector<InputFile> files = simulation.input_files();
+  for (std::size_t k = 0; k < files.size() && checkpoint.files.size() == files.size(); ++k)
+    if (checkpoint.files[k] != files[k].sum)
+      throw InputError({files[k].path.string()},
+                       fmt::format("has changed since {} was written; bring the old file back, or run the scene anew with `taut run`",
+                                   checkpoint_file().string()));
+  if (static_cast<Index>(checkpoint.state.x.size()) != simulation.cloth().nodes() || checkpoint.files.size() != files.size())
     throw InputError({checkpoint_file().string()},
-                     fmt::format("has {} nodes, the scene has {}; a mesh file has changed since: run the scene anew",
-                                 checkpoint.state.x.size(), simulation.cloth().nodes()));
+                     fmt::format("has {} nodes and {} mesh files, the scene has {} and {}: run the scene anew with `taut run`",
+                                 checkpoint.state.x.size(), checkpoint.files.size(), simulation.cloth().nodes(), files.size()));
   simulation.restore(std::move(checkpoint.state), std::move(checkpoint.contacts), checkpoint.steps, checkpoint.solver_memory,
                      std::move(checkpoint.zones));
-  return checkpoint.frame;
+  return {checkpoint.frame, checkpoint.scene != scene};
 }
 
 std::string StatsWriter::header() {
@@ -176,7 +254,7 @@ std::string StatsWriter::header() {
          "assemble_ms,order_ms,factor_ms,solve_ms,contact_ms,step_ms,kinetic_J,elastic_J,max_stretch,intersections,bound_iterations,"
          "precision,fallbacks,"
          "collapsed_springs,retries,zone_nodes,contact_passes,contact_moved,deepest_m,newton_iterations,"
-         "pairs_tested,near_pairs,pushing_pairs,impacts,zones,largest_zone,near_ms,impulse_ms,detect_ms,zone_ms,check_ms\n";
+         "pairs_tested,near_pairs,pushing_pairs,impacts,zones,largest_zone,near_ms,impulse_ms,detect_ms,zone_ms,check_ms,overshoot\n";
 }
 
 StatsWriter::StatsWriter(const fs::path& path, int keep_steps) : path_(path) {
@@ -204,12 +282,12 @@ void StatsWriter::write(const StepRecord& r, int frame) {
   const auto optional = [](auto value, auto nothing) { return value == nothing ? std::string() : std::to_string(value); };
   const std::string row = fmt::format(
       "{},{:.9g},{},{},{},{},{},{},{},{},{:.3e},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.9g},{:.9g},{:.6g},{},{},{},{},{},{},{},{},{},{"
-      ":.3e},{},{},{},{},{},{},{},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f}\n",
+      ":.3e},{},{},{},{},{},{},{},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3g}\n",
       r.step, r.time, frame, r.nodes, r.dof, r.constraints, r.contacts, r.solver, optional(r.core_springs, Index{0}), r.iterations,
       r.relative_residual, r.assemble_ms, r.order_ms, r.factor_ms, r.solve_ms, r.contact_ms, r.step_ms, r.kinetic_J, r.elastic_J,
       r.max_stretch, optional(r.intersections, -1), optional(r.bound_iterations, -1), r.precision, r.fallbacks, r.collapsed_springs,
       r.retries, r.zone_nodes, r.contact_passes, r.contact_moved, r.deepest_m, r.newton_iterations, r.pairs_tested, r.near_pairs,
-      r.pushing_pairs, r.impacts, r.zones, r.largest_zone, r.near_ms, r.impulse_ms, r.detect_ms, r.zone_ms, r.check_ms);
+      r.pushing_pairs, r.impacts, r.zones, r.largest_zone, r.near_ms, r.impulse_ms, r.detect_ms, r.zone_ms, r.check_ms, r.overshoot);
   // One write a row: a reader, or a crash, never sees half of one.
   if (std::fwrite(row.data(), 1, row.size(), file_) != row.size() || std::fflush(file_) != 0)
     throw InputError({path_.string()}, "cannot be written; is the disk full? The steps up to here are safe: `taut resume` goes on");

@@ -29,6 +29,11 @@
 
 namespace taut {
 
+struct CheckpointPlace {
+  int frame = 0;              // at which it was written
+  bool other_length = false;  // the scene has another number of frames now
+};
+
 class ResultsFolder {
  public:
   explicit ResultsFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
@@ -41,9 +46,13 @@ class ResultsFolder {
   std::filesystem::path checkpoint_file() const { return folder_ / "checkpoint" / "state.bin"; }
   std::filesystem::path contact_sheet_file() const { return folder_ / "contact_sheet.png"; }
 
-  // Makes the folder for a new run: results of an earlier run in it are removed. Throws InputError when the folder holds something that is not a
-  // result of Taut's, or when a run is writing it.
-  void start(const Simulation& simulation) const;
+  // Makes the folder for a new run: results of an earlier run in it are removed. Throws InputError when the folder holds something that is
+  // not a result of Taut's, or when a run is writing it. Returns what was there where that was another scene's: in sentences, for the user.
+  std::vector<std::string> start(const Simulation& simulation) const;
+  // Before the run goes on for another number of frames than it began with.
+  void change_length(const Simulation& simulation) const;
+  // What processes that were killed left of files they were writing.
+  void remove_unfinished() const;
   // Throws InputError while another run writes this folder.
   void refuse_running() const;
   // `contact`: as node_contact; it is there as soon as the frame is. Without it there is none.
@@ -53,11 +62,14 @@ class ResultsFolder {
   std::optional<std::vector<std::uint8_t>> read_contact(int frame) const;
   // How many frames there are, counted from 0 without a gap.
   int frame_count() const;
+  // Is there a frame after the first that is missing? Such a folder was tampered with, or its disk is failing.
+  bool has_gap() const;
   void remove_frames_after(int frame) const;
 
   void write_checkpoint(const Simulation& simulation, int frame) const;
-  // Restores the simulation and returns the frame the checkpoint was written at. Throws InputError when it is missing, damaged or of another scene.
-  int read_checkpoint(Simulation& simulation) const;
+  // Restores the simulation. Throws InputError when the checkpoint is missing, damaged or of another scene, of which the number of frames
+  // alone may differ, or when a mesh or motion file has changed since.
+  CheckpointPlace read_checkpoint(Simulation& simulation) const;
 
  private:
   std::filesystem::path folder_;

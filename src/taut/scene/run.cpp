@@ -39,9 +39,51 @@ void add_step(RunSummary& summary, const StepRecord& r) {
   summary.mean_solver_ms += r.order_ms + r.factor_ms + r.solve_ms;
   summary.mean_contact_ms += r.contact_ms;
   summary.max_iterations = std::max(summary.max_iterations, r.iterations);
-  summary.max_stretch = std::max(summary.max_stretch, r.max_stretch);
   summary.deepest_m = std::max(summary.deepest_m, r.deepest_m);
   summary.fallbacks += r.fallbacks;
+}
+
+void note_stretch(RunSummary& summary, const StepRecord& r, const Simulation& simulation) {
+  if (r.overshoot > 0.0) {
+    AcceptedOvershoots& o = summary.overshoots;
+    ++o.steps;
+    o.largest = std::max(o.largest, r.overshoot);
+    if (std::max(r.overshoot, r.max_stretch) > AcceptedOvershoots::torn && o.torn_steps++ == 0) o.first_torn = r.step;
+  }
+  // NaN too: it is not below.
+  if (r.max_stretch <= summary.max_stretch) return;
+  summary.max_stretch = r.max_stretch;
+  summary.worst_stretch = simulation.worst_stretch();
+  summary.worst_step = r.step;
+  summary.worst_time = r.time;
+}
+
+void warn(RunSummary& s, const TimeOptions& time) {
+  if (s.overshoots.torn_steps == 0) return;
+  s.warnings.push_back(fmt::format(
+      "the result is not to be trusted from step {} on: in {} of {} steps springs ended up to {:.3g} % of their length beyond what the "
+      "step foresaw, "
+      "although steps were halved {} times. Worst stretch: {:.4g} % between nodes {} and {} of cloth '{}' in step {} (t = {:.4g} s). Make "
+      "pins and "
+      "solids that pull there slower, or time.step smaller, or allow more halvings (time.max_halvings)",
+      s.overshoots.first_torn, s.overshoots.torn_steps, s.steps, 100.0 * s.overshoots.largest, time.max_halvings,
+      100.0 * s.worst_stretch.stretch, s.worst_stretch.i, s.worst_stretch.j, s.worst_stretch.cloth, s.worst_step, s.worst_time));
+}
+
+// What to do about a step that failed.
+std::string advice(const Status& status, const Simulation& simulation) {
+  const SurfaceContact* contact = simulation.surface_contact();
+  if (contact && !contact->contact().trouble().empty())
+    return "leave the cloth there more room, let the pins and solids that hold it move slower or alike (their key frames), or make "
+           "time.step or "
+           "contact.thickness smaller; last_good/ shows the place";
+  if (status.outcome == Outcome::not_finite)
+    return "numbers have grown without bound: make time.step smaller, and look for key frames that jump and for stiffnesses or masses far "
+           "from those of "
+           "cloth (`taut check`)";
+  if (status.outcome == Outcome::max_iterations && simulation.stepper().integrator().is_nonlinear())
+    return "make time.step smaller, allow more with time.newton_max_iterations, or ask for less with time.newton_tolerance";
+  return "make time.step smaller, or take another solver.name";
 }
 
 void finish_means(RunSummary& summary) {
@@ -59,6 +101,7 @@ void write_summary(const RunSummary& s, const Simulation& simulation, const Resu
   nlohmann::ordered_json json{{"title", scene.title},
                               {"status", name_of(s.end)},
                               {"message", s.message},
+                              {"warnings", s.warnings},
                               {"nodes", s.nodes},
                               {"frames", s.frames},
                               {"steps_total", simulation.steps_done()},
@@ -77,6 +120,9 @@ void write_summary(const RunSummary& s, const Simulation& simulation, const Resu
                                 {"mean_iterations", s.mean_iterations},
                                 {"max_iterations", s.max_iterations},
                                 {"max_stretch", s.max_stretch},
+                                {"max_stretch_step", s.worst_step},
+                                {"steps_overshot", s.overshoots.steps},
+                                {"largest_overshoot", s.overshoots.largest},
                                 {"deepest_m", s.deepest_m},
                                 {"fallbacks", s.fallbacks}}},
                               {"threads", thread_count()},
@@ -101,6 +147,7 @@ RunSummary run(Simulation& simulation, const ResultsFolder& results, RunObserver
   RunSummary summary;
   summary.nodes = simulation.cloth().nodes();
   results.refuse_running();
+  results.remove_unfinished();
   // What an earlier part of the run said about its end is over.
   std::filesystem::remove(results.summary_file());
   results.remove_frames_after(first_frame);
@@ -118,7 +165,7 @@ RunSummary run(Simulation& simulation, const ResultsFolder& results, RunObserver
     const Status status = simulation.step(record);
     if (!status.ok()) {
       summary.end = RunEnd::failed;
-      summary.message = status.message;
+      summary.message = status.message + "; " + advice(status, simulation);
       save_last_good(simulation, results);
       break;
     }
@@ -126,6 +173,7 @@ RunSummary run(Simulation& simulation, const ResultsFolder& results, RunObserver
     const bool ends_frame = simulation.steps_done() % time.steps_per_frame == 0;
     stats.write(record, simulation.steps_done() / time.steps_per_frame);
     add_step(summary, record);
+    note_stretch(summary, record, simulation);
     observer.on_step(record, steps_total);
     if (!ends_frame) continue;
     results.write_frame(++frame, simulation.state().x, node_contact(simulation));
@@ -137,6 +185,7 @@ RunSummary run(Simulation& simulation, const ResultsFolder& results, RunObserver
   summary.wall_s = timer.milliseconds() / 1000.0;
   summary.peak_memory_MB = peak_memory_MB();
   finish_means(summary);
+  warn(summary, time);
   write_summary(summary, simulation, results);
   return summary;
 }

@@ -20,6 +20,15 @@ class RunObserver {
 enum class RunEnd { finished, interrupted, failed };
 const char* name_of(RunEnd end);
 
+// Steps in which a spring still ended longer than foreseen (TimeOptions::overshoot_limit) after the last halving. A few per cent too much
+// hardly show; a step in which springs also stretch by `torn` or more no longer tells what cloth would do, and the user is warned.
+struct AcceptedOvershoots {
+  static constexpr double torn = 0.3;  // share of a rest length
+  int steps = 0;
+  int torn_steps = 0, first_torn = 0;
+  double largest = 0.0;  // share of a rest length
+};
+
 struct RunSummary {
   RunEnd end = RunEnd::finished;
   std::string message;  // why it failed
@@ -28,6 +37,11 @@ struct RunSummary {
   double mean_step_ms = 0.0, mean_iterations = 0.0, mean_assemble_ms = 0.0, mean_solver_ms = 0.0, mean_contact_ms = 0.0;
   int max_iterations = 0;
   double max_stretch = 0.0;
+  WorstStretch worst_stretch;  // where and when that was
+  int worst_step = 0;
+  double worst_time = 0.0;  // s
+  AcceptedOvershoots overshoots;
+  std::vector<std::string> warnings;  // of results that should not be trusted, whatever the end: sentences for the user
   double deepest_m = 0.0;
   int fallbacks = 0;
   Index nodes = 0;

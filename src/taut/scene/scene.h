@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "taut/base/error.h"
 #include "taut/base/types.h"
 #include "taut/contact/contact_options.h"
 #include "taut/contact/solid.h"
@@ -36,6 +37,11 @@ struct NodeSelection {
   bool operator==(const NodeSelection&) const = default;
 };
 
+// Where a scene file says something, for messages about what is found out later; no part of what the scene is.
+struct WrittenAt : SourcePlace {
+  bool operator==(const WrittenAt&) const { return true; }
+};
+
 // A pin holds nodes still, or carries them along a path: the displacement of the path since time 0 is added to where the nodes started, and
 // they turn about `pivot` with the key frames' rotation. Between key frames as Solid. After `release` (s) the nodes are free.
 struct Pin {
@@ -43,6 +49,7 @@ struct Pin {
   std::vector<KeyFrame> key_frames;
   Vec3 pivot = Vec3::Zero();
   double release = -1.0;  // negative: never
+  WrittenAt nodes_at;
   bool operator==(const Pin&) const = default;
 };
 

@@ -1,25 +1,15 @@
-#include <fmt/format.h>
-
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
-#include "taut/scene/cloth_estimate.h"
+#include "taut/io/obj.h"
 #include "taut/scene/cloth_shape.h"
+#include "taut/scene/doubts.h"
 #include "taut/scene/scene_file.h"
 
 namespace taut {
 
 namespace {
-
-struct Doubts {
-  const Scene& scene;
-  std::vector<std::string> found;
-
-  template <class... Args>
-  void add(fmt::format_string<Args...> text, Args&&... args) {
-    found.push_back(fmt::format(text, std::forward<Args>(args)...));
-  }
-};
 
 void doubt_time(Doubts& d) {
   const double h = d.scene.time.step;
@@ -82,6 +72,11 @@ void doubt_stretch(Doubts& d, const Cloth& cloth, const ClothEstimate& e) {
   if (cloth.pins.empty() || !cloth.is_grid()) return;
   // The topmost spring of a hanging column of n nodes carries all of them.
   const double n = std::max(cloth.grid.nu, cloth.grid.nv);
+  if (!(cloth.material.k_stretch > 0)) {
+    d.add("cloth '{}' has k_stretch = {}: nothing keeps it together and it will flow from its pins; set k_stretch = {:.2g} or higher",
+          cloth.name, cloth.material.k_stretch, std::max(1.0, n * e.node_mass * d.scene.gravity.norm() / (0.01 * e.spacing)));
+    return;
+  }
   const double strain = n * e.node_mass * d.scene.gravity.norm() / (cloth.material.k_stretch * e.spacing);
   if (strain > 0.1)
     d.add("cloth '{}' will hang like rubber: under its own weight springs stretch by {:.0f} % and more; set k_stretch = {:.2g} or higher",
@@ -107,19 +102,20 @@ void doubt_layers(Doubts& d, const Cloth& cloth, const ClothEstimate& e) {
 }
 
 void doubt_start(Doubts& d, const Cloth& cloth, const TriangleMesh& shape, const Solid& solid) {
-  const Pose pose = solid.pose(0.0);
-  if (solid.shape == SolidShape::mesh) return;  // found as intersections
-  if (d.scene.contact.untangle && d.scene.contact.self) return;
+  if (solid.shape == SolidShape::mesh || (d.scene.contact.untangle && d.scene.contact.self)) return;
+  const std::vector<bool> pinned = pinned_at_start(cloth, shape.positions.size());
   std::size_t inside = 0;
   double deepest = 0.0;
-  for (const Vec3& x : shape.positions) {
-    const double distance = closest_surface(solid, pose.to_local(x)).distance - solid.thickness;
-    if (distance < -d.scene.contact.touch_tolerance) ++inside;
-    deepest = std::min(deepest, distance);
+  for (std::size_t i = 0; i < pinned.size(); ++i) {
+    const double depth = pinned[i] ? 0.0 : depth_at_start(solid, shape.positions[i]);
+    if (depth > d.scene.contact.touch_tolerance) ++inside;
+    deepest = std::max(deepest, depth);
   }
   if (inside > 0)
-    d.add("{} of the {} nodes of cloth '{}' start inside solid '{}', up to {:.3g} m deep, and will be thrown out: move one of the two, or let --untangle do it",
-          inside, shape.positions.size(), cloth.name, solid.name, -deepest);
+    d.add(
+        "{} of the {} nodes of cloth '{}' start inside solid '{}', up to {:.3g} m deep, and will be thrown out: move one of the two, or "
+        "let --untangle do it",
+        inside, shape.positions.size(), cloth.name, solid.name, deepest);
 }
 
 // Nodes stay outside, but a right triangle with legs a between three of them reaches a²/(4 r) into a ball of radius r.
@@ -129,6 +125,28 @@ void doubt_thickness(Doubts& d, const Cloth& cloth, const ClothEstimate& e, cons
   if (solid.thickness < cut)
     d.add("solid '{}' will show through cloth '{}': triangles cut {:.2g} m into it; set thickness = {:.1g} or more, or use finer cloth",
           solid.name, cloth.name, cut, 1.5 * cut);
+}
+
+// A garment is a metre or so; what is this much longer was made in other units.
+bool doubt_units(Doubts& d, const Cloth& cloth, const TriangleMesh& shape) {
+  constexpr double centimetres = 20.0, millimetres = 300.0;
+  Eigen::AlignedBox3d box;
+  for (const Vec3& x : shape.positions) box.extend(x);
+  const double size = box.sizes().maxCoeff();
+  if (!cloth.from_file || size <= centimetres) return false;
+  const bool small = size > millimetres;
+  d.add("cloth '{}' is {:.3g} m long: the lengths in {} may not be metres; if they are {}, set scale = {:g}", cloth.name, size,
+        cloth.mesh.filename().string(), small ? "millimetres" : "centimetres", (small ? 1e-3 : 1e-2) * cloth.scale);
+  return true;
+}
+
+// Seams and other things that some programs write into an OBJ, and that Taut does not read.
+void doubt_statements(Doubts& d, const std::filesystem::path& mesh, const std::string& prim) {
+  if (!prim.empty() || mesh.extension() != ".obj") return;
+  std::vector<std::string> notes;
+  read_obj(mesh.is_absolute() ? mesh : d.scene.folder / mesh, &notes);
+  for (const std::string& note : notes)
+    if (note.find("is not OBJ") != std::string::npos) d.add("{}: what they say has no effect", note);
 }
 
 double smallest_extent(const Solid& solid) {
@@ -164,6 +182,9 @@ std::vector<std::string> doubtful(const Scene& scene) {
   for (const Cloth& cloth : scene.cloths) {
     const TriangleMesh shape = start_shape(cloth, d.scene.folder);
     const ClothEstimate e = estimate(cloth, shape);
+    const bool other_units = doubt_units(d, cloth, shape);
+    if (cloth.from_file) doubt_statements(d, cloth.mesh, cloth.prim);
+    doubt_pins(d, cloth, shape, e);
     doubt_fall(d, cloth);
     doubt_mass(d, cloth, e);
     doubt_stability(d, cloth, e);
@@ -174,7 +195,7 @@ std::vector<std::string> doubtful(const Scene& scene) {
     doubt_layers(d, cloth, e);
     for (const Solid& solid : scene.solids) {
       doubt_start(d, cloth, shape, solid);
-      doubt_thickness(d, cloth, e, solid);
+      if (!other_units) doubt_thickness(d, cloth, e, solid);
     }
   }
   return d.found;

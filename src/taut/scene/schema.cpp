@@ -106,7 +106,7 @@ void name_all(SchemaVisitor& v, const char* key, std::vector<Named>& items) {
 
 void describe_pose(SchemaVisitor& v, Pose& pose, bool applies, const char* only_for) {
   v.vector("translation", pose.translation,
-           {.doc = "moved by this, after the rotation", .unit = "m", .applies = applies, .only_for = only_for});
+           {.doc = "moved by this, after the rotation", .unit = "m", .min = -1e6, .max = 1e6, .applies = applies, .only_for = only_for});
   v.rotation("rotation", pose.rotation, {.doc = "turned about the origin", .applies = applies, .only_for = only_for});
 }
 

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "taut/base/error.h"
 #include "taut/base/types.h"
 
 namespace taut {
@@ -69,6 +70,8 @@ class SchemaVisitor {
 
   // Is the key in the file? Where there is no file: `now`.
   virtual bool given(const char* key, bool now) = 0;
+  // Where the file has the key; nowhere where there is no file, or not this key.
+  virtual SourcePlace place_of(const char*) { return {}; }
   // The file must hold exactly one of these keys.
   virtual void exactly_one(std::span<const char* const> keys) = 0;
   // A condition that a range cannot say. When it fails the reader reports `message` at `key` (skipped when this table has errors already).

@@ -20,9 +20,9 @@ void describe_grid(SchemaVisitor& v, GridShape& grid) {
   v.integers("nodes", nodes, {.doc = "number of nodes along u and along v", .min = 2, .max = 20000, .required = true, .count = 2});
   grid.nu = nodes[0], grid.nv = nodes[1];
   v.check(Offset{grid.nu} * grid.nv <= max_nodes, "nodes", "more than 100 million nodes: use fewer");
-  v.vector("origin", grid.origin, {.doc = "corner u0v0", .unit = "m"});
-  v.vector("u", grid.u, {.doc = "the edge from corner u0v0 to u1v0", .unit = "m", .required = true});
-  v.vector("v", grid.v, {.doc = "the edge from corner u0v0 to u0v1", .unit = "m", .required = true});
+  v.vector("origin", grid.origin, {.doc = "corner u0v0", .unit = "m", .min = -1e6, .max = 1e6});
+  v.vector("u", grid.u, {.doc = "the edge from corner u0v0 to u1v0", .unit = "m", .min = -1e6, .max = 1e6, .required = true});
+  v.vector("v", grid.v, {.doc = "the edge from corner u0v0 to u0v1", .unit = "m", .min = -1e6, .max = 1e6, .required = true});
   v.check(grid.u.cross(grid.v).norm() > 1e-9 * grid.u.norm() * grid.v.norm(), "v",
           "u and v span no area: give two edges that are not zero and not parallel");
 }
@@ -105,6 +105,7 @@ void check_nodes(SchemaVisitor& v, const Cloth& cloth, const std::vector<Index>&
 void describe_pin(SchemaVisitor& v, const Cloth& cloth, Pin& pin) {
   v.exactly_one(std::array{"nodes", "corners", "edges"});
   v.integers("nodes", pin.where.nodes, {.doc = "by index, from 0", .min = 0, .unset = pin.where.nodes.empty()});
+  pin.nodes_at = {v.place_of("nodes")};
   check_nodes(v, cloth, pin.where.nodes);
   constexpr const char* grid_only = "a cloth with grid (on a mesh or a tube pin nodes by index)";
   constexpr const char* edges_only = "a cloth with grid or tube (on a mesh pin nodes by index)";
@@ -120,6 +121,10 @@ void describe_pin(SchemaVisitor& v, const Cloth& cloth, Pin& pin) {
                  .only_for = edges_only});
   for (const std::string& edge : pin.where.edges)
     v.check(!cloth.is_tube || edge[0] == 'v', "edges", "a tube has no edge '" + edge + "': write \"v0\" (below) or \"v1\" (above)");
+  constexpr const char* none = "empty, so the pin holds nothing: name what it holds, or remove the pin";
+  v.check(!v.given("nodes", false) || !pin.where.nodes.empty(), "nodes", none);
+  v.check(!v.given("corners", false) || !pin.where.corners.empty(), "corners", none);
+  v.check(!v.given("edges", false) || !pin.where.edges.empty(), "edges", none);
   v.vector("pivot", pin.pivot, {.doc = "the point about which the key frames turn", .unit = "m"});
   v.number("release", pin.release,
            {.doc = "when the nodes are let go; never when not given", .unit = "s", .min = 0, .max = 1e6, .unset = pin.release < 0});

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "taut/base/error.h"
@@ -73,6 +74,7 @@ SequenceExport::SequenceExport(const ResultFrames& frames, const SequenceExportO
                                   .title = frames.scene().title,
                                   .first_frame = options.first,
                                   .frames = (options.last - options.first) / options.stride + 1,
+                                  .frame_stride = options.stride,
                                   .frame_interval = frames.interval(),
                                   .up = up_,
                                   .metres_per_unit = 1.0 / options.scale},
@@ -104,6 +106,23 @@ std::vector<ObjectFrame> SequenceExport::objects_at(int frame) const {
 
 void SequenceExport::add_frames_until(int frame) {
   for (; next_ <= std::min(frame, options_.last); next_ += options_.stride) writer_->add_frame(next_, objects_at(next_));
+}
+
+std::vector<std::filesystem::path> SequenceExport::files_of_other_frames() const {
+  std::vector<std::filesystem::path> others;
+  if (!std::filesystem::is_directory(options_.folder)) return others;
+  const auto added = [&](int frame) { return frame >= options_.first && frame < next_ && (frame - options_.first) % options_.stride == 0; };
+  for (const auto& entry : std::filesystem::directory_iterator(options_.folder)) {
+    const std::string name = entry.path().stem().string(), extension = entry.path().extension().string();
+    const std::size_t mark = name.rfind('_');
+    if ((extension != ".obj" && extension != ".ply") || mark == std::string::npos || name.size() - mark != 7 ||
+        name.find_first_not_of("0123456789", mark + 1) != std::string::npos || added(std::stoi(name.substr(mark + 1))))
+      continue;
+    const auto objects = writer_->objects();
+    if (std::ranges::any_of(objects, [&](const SequenceObject& object) { return object.stem == name.substr(0, mark); }))
+      others.push_back(entry.path());
+  }
+  return others;
 }
 
 void SequenceExport::finish() {

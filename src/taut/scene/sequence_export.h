@@ -31,6 +31,9 @@ class SequenceExport {
   // Adds the chosen frames up to this one that have not been added; they must be in the results folder.
   void add_frames_until(int frame);
   int frames_added() const { return writer_->frames_added(); }
+  // Meshes in the folder that an earlier export of the same objects has left, of frames that this one has not added: other programs would
+  // take them for part of the sequence.
+  std::vector<std::filesystem::path> files_of_other_frames() const;
   // Ends what has at least one frame. Without it, what was begun is taken back.
   void finish();
 

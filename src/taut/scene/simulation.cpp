@@ -39,6 +39,33 @@ Simulation::Simulation(Scene scene)
   stepper_.choose_core(scene_.time.step);
 }
 
+WorstStretch Simulation::worst_stretch() const {
+  WorstStretch worst;
+  const Spring* where = nullptr;
+  for (const SpringModel* model : cloth_.stretch_springs()) {
+    const std::vector<double> strains = spring_strains(*model, state_.x);
+    for (std::size_t s = 0; s < strains.size(); ++s)
+      if (!where || strains[s] > worst.stretch) worst.stretch = strains[s], where = &model->springs()[s];
+  }
+  if (!where) return worst;
+  for (const ClothPart& part : cloth_.parts())
+    if (where->i >= part.first_node && where->i < part.first_node + part.node_count)
+      worst.cloth = part.name, worst.i = where->i - part.first_node, worst.j = where->j - part.first_node;
+  return worst;
+}
+
+std::vector<InputFile> Simulation::input_files() const {
+  std::vector<InputFile> files;
+  for (std::size_t c = 0; c < scene_.cloths.size(); ++c)
+    if (scene_.cloths[c].from_file) files.push_back({scene_.cloths[c].mesh, cloth_.parts()[c].file_sum});
+  if (!surface_contact_) return files;
+  for (const MeshSolid& solid : surface_contact_->solids()) {
+    files.push_back({solid.solid().mesh, solid.mesh_sum()});
+    if (!solid.solid().motion.empty()) files.push_back({solid.solid().motion, solid.motion_sum()});
+  }
+  return files;
+}
+
 void Simulation::restore(State state, ContactState contacts, int steps, std::span<const double> solver_memory, ZoneState zones) {
   stepper_.solver().restore_memory(solver_memory);
   state_ = std::move(state);
@@ -69,7 +96,11 @@ Status Simulation::advance(double h, int halvings, StepRecord& record) {
   Status status = try_step(h, record);
   if (status.ok() && halvings == 0 && on_solved) on_solved(*this, last_summary_);
   const bool may_halve = halvings < scene_.time.max_halvings;
-  if (may_halve && (!status.ok() || overshoot() > scene_.time.overshoot_limit)) return advance_halves(h, halvings, record);
+  const double beyond = status.ok() ? overshoot() : 0.0;
+  const bool overshot = beyond > scene_.time.overshoot_limit;
+  if (may_halve && (!status.ok() || overshot)) return advance_halves(h, halvings, record);
+  // Without halving, as in the paper, it is the user's choice to accept what comes.
+  if (overshot && scene_.time.max_halvings > 0) record.overshoot = std::max(record.overshoot, beyond);
   if (status.ok()) status = accept(h, record);
   return status.ok() || !may_halve ? status : advance_halves(h, halvings, record);
 }

@@ -6,9 +6,9 @@
 //
 // A solve that fails is repeated by a direct method (counted in `fallbacks`, named in the record). If that fails too, or a stretch spring
 // overshoots by more than TimeOptions::overshoot_limit (force/overshoot.h), the step is redone as two of half the length, and each of them
-// likewise, down to h / 2^max_halvings (counted in `retries`). So it is if cloth cannot be kept from passing through itself. What overshoots
-// there is accepted; what cannot be solved or kept apart there makes step() return a bad status with the step and time in its message, and
-// the state stays that of the step before.
+// likewise, down to h / 2^max_halvings (counted in `retries`). So it is if cloth cannot be kept from passing through itself. What
+// overshoots there is accepted (StepRecord::overshoot says so); what cannot be solved or kept apart there makes step() return a bad status
+// with the step and time in its message, and the state stays that of the step before.
 
 #include <functional>
 
@@ -38,6 +38,7 @@ struct StepRecord {
   Index collapsed_springs = 0;
   int contact_passes = 0;
   int newton_iterations = 0;  // linear solves beyond one a pass; nonlinear integrators
+  double overshoot = 0.0;     // the largest that was accepted after the last halving, share of a rest length; 0: none
   int retries = 0;            // times that the step, or a part of it, was redone with half the length
   int contact_moved = 0;      // nodes moved out of solids after the last pass
   double deepest_m = 0.0;     // how deep the deepest of them was
@@ -46,6 +47,19 @@ struct StepRecord {
   int near_pairs = 0, pushing_pairs = 0, impacts = 0, zones = 0, zone_nodes = 0, largest_zone = 0;
   double near_ms = 0.0, impulse_ms = 0.0, detect_ms = 0.0, zone_ms = 0.0, check_ms = 0.0;
   int intersections = -1;  // -1: not looked for
+};
+
+// A mesh or motion that was read, and a sum of what was in it (base/checksum.h).
+struct InputFile {
+  std::filesystem::path path;
+  std::uint64_t sum = 0;
+};
+
+// The stretch spring that is longest for its rest length.
+struct WorstStretch {
+  double stretch = 0.0;  // L/L0 - 1
+  std::string cloth;
+  Index i = 0, j = 0;  // its ends, nodes of the cloth
 };
 
 class Simulation {
@@ -59,6 +73,9 @@ class Simulation {
   const ClothModel& cloth() const { return cloth_; }
   const State& state() const { return state_; }
   int steps_done() const { return steps_; }
+  WorstStretch worst_stretch() const;
+  // Of cloths, then of solids.
+  std::vector<InputFile> input_files() const;
   const SolidContact& contact() const { return contact_; }
   Stepper& stepper() { return stepper_; }
   const Stepper& stepper() const { return stepper_; }

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "taut/base/error.h"
+#include "taut/scene/doubts.h"
 #include "taut/scene/surface_contact.h"
 
 namespace taut {
@@ -27,6 +28,21 @@ std::vector<double> rest_lengths(const CollisionSurface& surface, const ClothMod
   return lengths;
 }
 
+// The pinned nodes that no untangling takes out of solids; "" when there are none.
+std::string pins_inside(const Scene& scene, const ClothModel& cloth, std::span<const Vec3> x, std::span<const std::uint8_t> held) {
+  std::string text;
+  for (const ClothPart& part : cloth.parts())
+    for (const Solid& solid : scene.solids)
+      for (Index i = 0; i < part.node_count; ++i) {
+        const auto node = static_cast<std::size_t>(part.first_node + i);
+        const double depth = held[node] ? depth_at_start(solid, x[node]) : 0.0;
+        if (depth <= scene.contact.touch_tolerance) continue;
+        text += fmt::format("\n  a pin holds node {} of cloth '{}' inside solid '{}', {:.3g} m deep", i, part.name, solid.name, depth);
+        break;  // one a cloth and solid is enough to find the pin
+      }
+  return text;
+}
+
 }  // namespace
 
 void SurfaceContact::untangle_start(const Scene& scene, ClothModel& cloth) {
@@ -38,6 +54,9 @@ void SurfaceContact::untangle_start(const Scene& scene, ClothModel& cloth) {
   const CollisionSurface& surface = contact_->surface();
   const std::vector<double> rest = rest_lengths(surface, cloth, x);
   untangled_ = untangle({surface, contact_->bodies(), mass_, held, rest, scene.solids, contact_->options()}, x);
+  if (const std::string inside = untangled_->status.ok() ? "" : pins_inside(scene, cloth, x, held); !inside.empty())
+    throw InputError(
+        fmt::format("the start cannot be untangled, since pins are not moved:{}\nNothing was changed. Move the pin or the solid", inside));
   if (!untangled_->status.ok())
     throw InputError(
         fmt::format("cloth that intersects at the start cannot be drawn apart: {}{}\nNothing was changed. Move the cloths apart where "

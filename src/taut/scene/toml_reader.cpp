@@ -152,7 +152,8 @@ void TomlReader::file(const char* key, fs::path& value, const KeyInfo& info) {
   const toml::node* node = level().table->get(key);
   text(key, name, info);
   if (name.empty()) {
-    if (node && node->is_string()) complain(*node, key, ": a file name was expected, the text is empty");
+    const auto given = node ? node->value_exact<std::string>() : std::nullopt;
+    if (info.applies && given && given->empty()) complain(*node, key, ": a file name was expected, the text is empty");
     return;
   }
   value = (folder_ / name).lexically_normal();

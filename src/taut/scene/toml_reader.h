@@ -31,6 +31,7 @@ class TomlReader final : public SchemaVisitor {
   void choose_some(const char* key, std::vector<std::string>& value, std::span<const char* const> names, const KeyInfo& info) override;
   void table(const char* key, const KeyInfo& info, const std::function<void()>& inside) override;
   bool given(const char* key, bool now) override;
+  SourcePlace place_of(const char* key) override;
   void exactly_one(std::span<const char* const> keys) override;
   void check(bool holds, const char* key, const std::string& message) override;
 

@@ -55,6 +55,11 @@ void TomlReader::complain_of_unknown_keys() {
 
 bool TomlReader::given(const char* key, bool) { return level().table->contains(key); }
 
+SourcePlace TomlReader::place_of(const char* key) {
+  const toml::node* node = level().table->get(key);
+  return node ? source_place(node->source()) : SourcePlace{};
+}
+
 void TomlReader::exactly_one(std::span<const char* const> keys) {
   std::vector<std::string> present;
   for (const char* key : keys)
