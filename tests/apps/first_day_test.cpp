@@ -105,6 +105,13 @@ TEST(FirstDay, ARunThatExplodesSaysSo) {
   EXPECT_GE(summary.at("this_run").at("steps_overshot"), 1);
   EXPECT_GT(std::stod(fields_of(lines_of(read_text(folder / "r/stats.csv"))[1]).back()), 0.05);
 
+  // Newton's method foresees nothing, and without halving nothing is retried: what they stretch is said all the same.
+  for (const char* setting : {"time.integrator=newton", "time.max_halvings=0"}) {
+    Names other = thrown;
+    other.insert(other.end(), {"--set", setting});
+    expect_said(taut(folder, other), 0, {"warning", "more than twice their length", "in step 1", "nodes 0 and"});
+  }
+
   ASSERT_EQ(taut(folder, {"run", "small.toml", "--out", "calm", "--no-picture", "--quiet"}).err, "");
   EXPECT_TRUE(nlohmann::json::parse(read_text(folder / "calm/summary.json")).at("warnings").empty());
 }
@@ -240,6 +247,14 @@ TEST(FirstDay, NothingIsAdvisedForAPinInsideASolidThatDoesNotHelp) {
   const ProgramEnd refused = taut(folder, untangle);
   expect_said(refused, 1, {"node 40 of cloth 'sheet'", "solid 'solid_0'", "Move the pin or the solid"});
   EXPECT_EQ(refused.err.find("allow_intersections"), std::string::npos) << refused.err;
+}
+
+TEST(FirstDay, AStepThatFailsComesWithAdvice) {
+  const WorkFolder folder;
+  folder.file("small.toml", small_scene());
+  const ProgramEnd end = taut(folder, {"run", "small.toml", "--out", "r", "--quiet", "--no-picture", "--set", "time.integrator=newton", "--set",
+                                       "time.newton_max_iterations=1", "--set", "time.newton_tolerance=1e-12", "--set", "time.max_halvings=0"});
+  expect_said(end, 1, {"Newton's method stopped after 1", "time.newton_max_iterations", "time.step smaller"});
 }
 
 TEST(FirstDay, AMistypedVerbIsRecognised) {

@@ -23,6 +23,8 @@ void write_file(const fs::path& path, const std::function<void(std::ostream&)>& 
   if (path.has_parent_path()) fs::create_directories(path.parent_path(), failure);
   // The process id keeps two programs that write into one folder from sharing a temporary file.
   const fs::path temporary = path.string() + ".tmp" + std::to_string(::getpid());
+  if (failure)
+    throw InputError({path.parent_path().string()}, "cannot be made: " + failure.message() + "; check the permissions of the folder it is to be in");
   errno = 0;
   bool complete = false;
   std::string reason;

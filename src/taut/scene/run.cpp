@@ -58,16 +58,24 @@ void note_stretch(RunSummary& summary, const StepRecord& r, const Simulation& si
   summary.worst_time = r.time;
 }
 
+std::string worst_place(const RunSummary& s) {
+  return fmt::format("{:.4g} % between nodes {} and {} of cloth '{}' in step {} (t = {:.4g} s)", 100.0 * s.worst_stretch.stretch, s.worst_stretch.i,
+                     s.worst_stretch.j, s.worst_stretch.cloth, s.worst_step, s.worst_time);
+}
+
 void warn(RunSummary& s, const TimeOptions& time) {
-  if (s.overshoots.torn_steps == 0) return;
-  s.warnings.push_back(fmt::format(
-      "the result is not to be trusted from step {} on: in {} of {} steps springs ended up to {:.3g} % of their length beyond what the "
-      "step foresaw, "
-      "although steps were halved {} times. Worst stretch: {:.4g} % between nodes {} and {} of cloth '{}' in step {} (t = {:.4g} s). Make "
-      "pins and "
-      "solids that pull there slower, or time.step smaller, or allow more halvings (time.max_halvings)",
-      s.overshoots.first_torn, s.overshoots.torn_steps, s.steps, 100.0 * s.overshoots.largest, time.max_halvings,
-      100.0 * s.worst_stretch.stretch, s.worst_stretch.i, s.worst_stretch.j, s.worst_stretch.cloth, s.worst_step, s.worst_time));
+  constexpr double twice_its_length = 1.0;
+  if (s.overshoots.torn_steps > 0)
+    s.warnings.push_back(
+        fmt::format("the result is not to be trusted from step {} on: in {} of {} steps springs ended up to {:.3g} % of their length beyond what the "
+                    "step foresaw, although steps were halved {} times. Worst stretch: {}. Make pins and solids that pull there slower, or time.step "
+                    "smaller, or allow more halvings (time.max_halvings)",
+                    s.overshoots.first_torn, s.overshoots.torn_steps, s.steps, 100.0 * s.overshoots.largest, time.max_halvings, worst_place(s)));
+  // Integrators that foresee nothing, and steps that may not be halved, end here.
+  else if (s.max_stretch > twice_its_length)
+    s.warnings.push_back(fmt::format("springs were stretched to more than twice their length, as no fabric is: {}. Unless that is meant, make pins and "
+                                     "solids that pull there slower, raise k_stretch, or make time.step smaller",
+                                     worst_place(s)));
 }
 
 // What to do about a step that failed.
