@@ -19,12 +19,12 @@ std::string system_reason() { return errno ? std::strerror(errno) : "unknown rea
 }  // namespace
 
 void write_file(const fs::path& path, const std::function<void(std::ostream&)>& write) {
-  std::error_code failure;
+  std::error_code failure, ignored;
   if (path.has_parent_path()) fs::create_directories(path.parent_path(), failure);
   // The process id keeps two programs that write into one folder from sharing a temporary file.
   const fs::path temporary = path.string() + ".tmp" + std::to_string(::getpid());
-  if (failure)
-    throw InputError({path.parent_path().string()}, "cannot be made: " + failure.message() + "; check the permissions of the folder it is to be in");
+  if (failure && !fs::is_directory(path.parent_path(), ignored))
+    throw InputError({path.string()}, "cannot be written: its folder cannot be made: " + failure.message() + "; check the permissions above it");
   errno = 0;
   bool complete = false;
   std::string reason;
