@@ -4,6 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <csignal>
+
+#include "taut/base/error.h"
+
 namespace taut {
 namespace {
 
@@ -36,6 +40,13 @@ TEST(ChildProcess, PatienceEnds) {
   const auto begin = std::chrono::steady_clock::now();
   EXPECT_EQ(run_child({"sleep", "100"}, 300ms).outcome, Outcome::too_slow);
   EXPECT_LT(std::chrono::steady_clock::now() - begin, 50s);
+}
+
+// As under a supervisor that ignores SIGCHLD, which its children inherit: no end may be taken for a good one.
+TEST(ChildProcess, AnEndThatIsNotToldIsNoGoodEnd) {
+  const auto usual = ::signal(SIGCHLD, SIG_IGN);
+  EXPECT_THROW(run_child({"sh", "-c", "exit 3"}, 10s), InputError);
+  ::signal(SIGCHLD, usual);
 }
 
 TEST(ChildProcess, OtherEndsAreTold) {

@@ -102,8 +102,11 @@ ChildEnd run_child(const std::vector<std::string>& arguments, std::chrono::milli
   const bool in_time = listen(output, errors, end, deadline);
   if (!in_time) ::kill(child, SIGKILL);
   int state = 0;
-  while (::waitpid(child, &state, 0) < 0 && errno == EINTR) {
-  }
+  pid_t waited;
+  do waited = ::waitpid(child, &state, 0);
+  while (waited < 0 && errno == EINTR);
+  // Who ignores SIGCHLD, or was started so, is not told.
+  if (waited < 0) throw InputError("how " + arguments[0] + " ended is not known: " + std::strerror(errno));
   if (!in_time)
     end.outcome = ChildEnd::Outcome::too_slow;
   else if (!WIFEXITED(state))

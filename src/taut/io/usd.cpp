@@ -30,12 +30,11 @@ std::string last_lines(std::string text) {
 TriangleMesh read_usd(const std::filesystem::path& path, const std::string& prim, std::vector<std::string>* notes) {
   const SourcePlace file{path.string()};
   if (!std::filesystem::is_regular_file(path)) throw InputError(file, "is not there, or no file");
-  // A path that begins with a dash would be taken for an option of Python's.
+  // OpenUSD would look for a bare name elsewhere, too.
   const ChildEnd end = run_child({python(), "-c", usd_script, std::filesystem::absolute(path).string(), prim}, patience);
   const std::string get_it =
-      "USD meshes are read by Python with OpenUSD: pip install usd-core in an environment of your own and name its Python in TAUT_PYTHON, "
-      "or "
-      "export the mesh as OBJ or PLY";
+      "USD meshes are read by Python with OpenUSD: pip install usd-core in an environment of your own and name its Python in "
+      "TAUT_PYTHON, or export the mesh as OBJ or PLY";
   switch (end.outcome) {
     case ChildEnd::Outcome::not_found:
       throw InputError(file, "cannot be read without Python (" + python() + " is not there); " + get_it);
@@ -47,7 +46,8 @@ TriangleMesh read_usd(const std::filesystem::path& path, const std::string& prim
       break;
   }
   if (end.code == refused) throw InputError(file, last_lines(end.errors));
-  if (end.code == without_pxr) throw InputError(file, "cannot be read: " + python() + " has no module pxr; " + get_it);
+  if (end.code == without_pxr)
+    throw InputError(file, "cannot be read: " + python() + " has no module pxr that works (" + last_lines(end.errors) + "); " + get_it);
   if (end.code != 0) throw InputError(file, "cannot be read; " + python() + " said: " + last_lines(end.errors));
   return parse_obj(path.string() + " (as OBJ)", end.output, notes);
 }

@@ -72,7 +72,8 @@ def main():
     prim = chosen_mesh(stage, wanted)
     name = str(prim.GetPath())
     mesh, time = UsdGeom.Mesh(prim), Usd.TimeCode.EarliestTime()
-    points, counts, indices = (attribute.Get(time) for attribute in (mesh.GetPointsAttr(), mesh.GetFaceVertexCountsAttr(), mesh.GetFaceVertexIndicesAttr()))
+    attributes = mesh.GetPointsAttr(), mesh.GetFaceVertexCountsAttr(), mesh.GetFaceVertexIndicesAttr()
+    points, counts, indices = (attribute.Get(time) for attribute in attributes)
     if not points or not counts or not indices:
         refuse("the mesh %s has no points or no faces" % name)
     if min(counts) < 3 or sum(counts) != len(indices) or min(indices) < 0 or max(indices) >= len(points):
