@@ -21,6 +21,8 @@ void describe_time(SchemaVisitor& v, TimeOptions& time) {
   v.number("step", time.step, {.doc = "time step h", .unit = "s", .min = 1e-7, .max = 0.1, .hint = "it is in seconds: 5 ms is 5e-3"});
   v.integer("frames", time.frames, {.doc = "pictures written after the first, which shows the start", .min = 1, .max = 1e6});
   v.integer("steps_per_frame", time.steps_per_frame, {.doc = "time steps from picture to picture", .min = 1, .max = 1e6});
+  v.check(static_cast<double>(time.frames) * time.steps_per_frame <= 2e9, "steps_per_frame",
+          fmt::format("{} frames of {} steps are more than 2e9 steps", time.frames, time.steps_per_frame));
   v.choice("integrator", time.integrator, integrator_names,
            {.doc = "`imex` treats stretch springs implicitly and all else explicitly: cheaper, but bounded in step size by shear and "
                    "bending; `imex_adaptive` treats explicitly only those shear and bending springs that are weak enough for the step; "
