@@ -39,6 +39,8 @@ export class SolidsView {
   readonly group = new THREE.Group();
   private readonly material = new THREE.MeshStandardMaterial({ roughness: 0.6 });
   private readonly planeMaterial = new THREE.MeshStandardMaterial({ roughness: 0.95 });
+  // Meshes may be open, and their triangles turned either way.
+  private readonly meshMaterial = new THREE.MeshStandardMaterial({ roughness: 0.6, side: THREE.DoubleSide });
   private readonly drawn: { solid: SolidInfo; mesh: THREE.Mesh }[] = [];
 
   private readonly meshes: MeshSolid[] = [];
@@ -68,7 +70,7 @@ export class SolidsView {
         const geometry = new THREE.BufferGeometry();
         geometry.setIndex(new THREE.BufferAttribute(triangles, 1));
         geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(3 * vertices), 3));
-        const mesh = new THREE.Mesh(geometry, this.material);
+        const mesh = new THREE.Mesh(geometry, this.meshMaterial);
         mesh.castShadow = mesh.receiveShadow = true;
         this.group.add(mesh);
         this.meshes.push({ geometry, points, shown: -1 });
@@ -83,15 +85,18 @@ export class SolidsView {
 
   setColour(solid: number, plane: number) {
     this.material.color.setHex(solid);
+    this.meshMaterial.color.setHex(solid);
     this.planeMaterial.color.setHex(plane);
   }
 
   // To see the cloth behind them.
   setTranslucent(on: boolean) {
-    this.material.transparent = on;
-    this.material.opacity = on ? 0.35 : 1;
-    this.material.depthWrite = !on;
-    this.material.needsUpdate = true;
+    for (const material of [this.material, this.meshMaterial]) {
+      material.transparent = on;
+      material.opacity = on ? 0.35 : 1;
+      material.depthWrite = !on;
+      material.needsUpdate = true;
+    }
   }
 
   setFrame(frame: number) {
@@ -128,6 +133,7 @@ export class SolidsView {
     for (const { mesh } of this.drawn) mesh.geometry.dispose();
     for (const { geometry } of this.meshes) geometry.dispose();
     this.material.dispose();
+    this.meshMaterial.dispose();
     this.planeMaterial.dispose();
   }
 }
