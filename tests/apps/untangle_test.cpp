@@ -5,27 +5,10 @@
 #include <nlohmann/json.hpp>
 
 #include "program.h"
+#include "scene/tangled_scenes.h"
 
 namespace taut::test {
 namespace {
-
-// A sheet whose border has slipped under its neighbour.
-const char* slipped_scene() {
-  return R"(title = "Slipped"
-[time]
-step = 4e-3
-frames = 2
-[[cloth]]
-name = "low"
-grid = { nodes = [15, 15], origin = [-0.1, -0.1, 0], u = [0.2, 0, 0], v = [0, 0.2, 0] }
-density = 0.15
-[[cloth]]
-name = "high"
-grid = { nodes = [13, 13], origin = [-0.09, -0.093, 0.008], u = [0.17, 0, -0.02], v = [0, 0.17, 0] }
-density = 0.15
-jitter = 1e-4
-)";
-}
 
 TEST(Untangle, CheckSaysWhatItMovesAndWritesTheStart) {
   const WorkFolder folder;
@@ -61,6 +44,7 @@ TEST(Untangle, RunStartsFromTheRepairedState) {
   const auto rows = lines_of(read_text(folder / "a/stats.csv"));
   const auto columns = fields_of(rows[0]);
   const auto at = std::ranges::find(columns, "intersections") - columns.begin();
+  ASSERT_EQ(rows.size(), 3u);
   for (std::size_t k = 1; k < rows.size(); ++k) EXPECT_EQ(fields_of(rows[k])[at], "0");
 
   // The scene that it wrote does the same, with any number of threads.
@@ -71,16 +55,7 @@ TEST(Untangle, RunStartsFromTheRepairedState) {
 
 TEST(Untangle, WhatItCannotDoLeavesNothing) {
   const WorkFolder folder;
-  folder.file("through.toml", R"(
-[[cloth]]
-name = "sheet"
-grid = { nodes = [11, 11], origin = [-0.1, -0.1, 0], u = [0.2, 0, 0], v = [0, 0.2, 0] }
-density = 0.15
-[[cloth]]
-name = "strip"
-grid = { nodes = [31, 4], origin = [0.001, -0.015, -0.3], u = [0, 0.001, 0.6], v = [0, 0.03, 0] }
-density = 0.15
-)");
+  folder.file("through.toml", pierced_scene());
   const ProgramEnd end = taut(folder, {"check", "through.toml", "--untangle", "--out", "start.obj"});
   EXPECT_EQ(end.exit_code, 1);
   EXPECT_NE(end.err.find("cannot be drawn apart"), std::string::npos) << end.err;

@@ -1,12 +1,13 @@
 // Scenes that start intersecting, repaired by contact.untangle: CGAL finds nothing left, and the run goes on from there.
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "contact/independent_judge.h"
+#include "io/temporary_folder.h"
+#include "scene/tangled_scenes.h"
 #include "taut/base/error.h"
 #include "taut/io/obj.h"
 #include "taut/scene/scene_file.h"
@@ -30,12 +31,11 @@ std::size_t judged_unrepaired(Scene scene) {
 // The shipped T-shirt laid flat: its front and back 6 mm apart, less towards the seams; jittered so that they go through each other.
 class FlatShirt : public testing::Test {
  protected:
-  FlatShirt() : file_(std::filesystem::temp_directory_path() / ("taut_flat_shirt_" + std::to_string(::getpid()) + ".obj")) {
+  FlatShirt() {
     TriangleMesh shirt = read_obj(TAUT_SOURCE_DIR "/scenes/meshes/tshirt.obj");
     for (Vec3& p : shirt.positions) p.z() *= 0.1;
     write_obj(file_, shirt);
   }
-  ~FlatShirt() override { std::filesystem::remove(file_); }
 
   Scene scene(unsigned seed) const {
     const std::string text = R"(
@@ -57,7 +57,8 @@ jitter = 2e-3
   }
 
  private:
-  std::filesystem::path file_;
+  const test::TemporaryFolder folder_;
+  const std::filesystem::path file_ = folder_ / "shirt.obj";
 };
 
 TEST_F(FlatShirt, IsDrawnApartAndRuns) {
@@ -78,22 +79,9 @@ TEST_F(FlatShirt, IsDrawnApartAndRuns) {
   }
 }
 
-const std::string through = R"(
-[time]
-step = 4e-3
-[[cloth]]
-name = "sheet"
-grid = { nodes = [11, 11], origin = [-0.1, -0.1, 0], u = [0.2, 0, 0], v = [0, 0.2, 0] }
-density = 0.15
-[[cloth]]
-name = "strip"
-grid = { nodes = [31, 4], origin = [0.001, -0.015, -0.3], u = [0, 0.001, 0.6], v = [0, 0.03, 0] }
-density = 0.15
-)";
-
 TEST(UntangleScene, WhatCannotBeDrawnApartIsRefusedWithItsFaces) {
   try {
-    Simulation simulation(read_scene_text(through, "/scenes/test.toml", std::vector<std::string>{"contact.untangle=true"}));
+    Simulation simulation(read_scene_text(test::pierced_scene(), "/scenes/test.toml", std::vector<std::string>{"contact.untangle=true"}));
     FAIL() << "not refused";
   } catch (const InputError& error) {
     const std::string text = error.what();
@@ -104,20 +92,7 @@ TEST(UntangleScene, WhatCannotBeDrawnApartIsRefusedWithItsFaces) {
 }
 
 TEST(UntangleScene, PinnedNodesStayWhereTheirPinsAre) {
-  const std::string text = R"(
-[time]
-step = 4e-3
-[[cloth]]
-name = "low"
-grid = { nodes = [15, 15], origin = [-0.1, -0.1, 0], u = [0.2, 0, 0], v = [0, 0.2, 0] }
-density = 0.15
-jitter = 1e-3
-pin = [{ corners = ["u0v0", "u1v0"] }]
-[[cloth]]
-name = "high"
-grid = { nodes = [13, 13], origin = [-0.09, -0.093, 0.008], u = [0.17, 0, -0.02], v = [0, 0.17, 0] }
-density = 0.15
-)";
+  const std::string text = test::slipped_scene("jitter = 1e-3\npin = [{ corners = [\"u0v0\", \"u1v0\"] }]\n");
   const Scene scene = read_scene_text(text, "/scenes/test.toml", std::vector<std::string>{"contact.untangle=true"});
   const ClothModel before(scene);
   Simulation simulation(scene);

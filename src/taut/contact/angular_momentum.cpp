@@ -85,7 +85,7 @@ void restore_angular_momentum(std::span<const ContactRow> rows, std::span<const 
     const Index island = islands.island(*free);
     if (islands.is_attached(island)) return;
     if (turn_of[island] < 0) turn_of[island] = static_cast<Index>(turns.size()), turns.emplace_back();
-    turns[turn_of[island]].missing -= separation(row, x0).cross(row.pushed);
+    turns[turn_of[island]].missing -= row.start.cross(row.pushed);
   };
   for (const ContactRow& row : rows) add(row);
   if (turns.empty()) return;

@@ -6,8 +6,8 @@
 //             of the edge
 //   E, N      direction of the edge; normal of the triangle it meets
 //   R_f       unit vector along the segment, from its end into face f of the edge (orthogonal to N and to f's normal)
-//   G         sum_f R_f - 2 (E·R_f)/(E·N) N:  moving the edge by d against the triangle changes the contour's length by -G·d / 2 at this
-//   end
+//   G         sum_f R_f - 2 (E·R_f)/(E·N) N:  moving the edge by d against the triangle changes the contour's length at this end by
+//             -G·d / 2
 //
 // The factor 2: the end runs along the edge, so that exactly d(length) = -R·d + (E·R)/(E·N) N·d if the edge moves, and (E·R)/(E·N) N·(-d)
 // if the triangle does; the R of a segment's two ends cancel, so half of each may be charged to either side. Source: Volino &
@@ -22,8 +22,8 @@
 
 namespace taut {
 
-// The faces of each edge: for edge e the vertices opposite to it, opposite[first[e]] ... opposite[first[e + 1] - 1]. Any number; one on a
-// border.
+// The faces of each edge: for edge e the vertices opposite to it, opposite[first[e]] ... opposite[first[e + 1] - 1].
+// Any number; one on a border.
 struct EdgeFaces {
   std::vector<Index> first, opposite;
   explicit EdgeFaces(const CollisionSurface& surface);

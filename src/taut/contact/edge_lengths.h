@@ -2,9 +2,8 @@
 // Keeps a surface's shape: the lengths of its edges within ranges, by moving nodes as little as that takes.
 //
 //   least, most   m, one range an edge of the surface, in its order
-//   method        position-based projection (Müller, Heidelberger, Hennix & Ratcliff 2007): an edge outside its range is brought back to
-//   the nearer end by
-//                 moving its free nodes equally, one edge after the other in fixed order
+//   method        position-based projection (Müller, Heidelberger, Hennix & Ratcliff 2007): an edge outside its range is brought back
+//                 to the nearer end by moving its free nodes equally, one edge after the other in fixed order
 
 #include <cstdint>
 

@@ -12,7 +12,7 @@ namespace taut {
 namespace {
 
 constexpr double length_slack = 0.01;
-constexpr double deep_share = 0.05;  // of the thickness: what contact with solids lets be
+constexpr double deep_share = 0.05;  // of the thickness: what contact with solids lets be, at least
 
 double mean_edge(const UntangleInput& input) {
   double sum = 0.0;
@@ -37,12 +37,14 @@ void measure(std::span<const Vec3> before, std::span<const Vec3> after, Untangle
   if (report.moved > 0) report.mean = sum / report.moved;
 }
 
-std::string why_not(const UntangleReport& report, double least_excess) {
+std::string why_not(const UntangleReport& report, double least_excess, double most_excess) {
   if (!report.left.empty())
     return fmt::format("of {} intersections {} are left after {} passes, whichever way they were drawn apart", report.intersections_before,
                        report.left.size(), report.passes);
-  return fmt::format("{} intersections can only be drawn apart by stretching or squeezing edges by {:.1f} %", report.intersections_before,
-                     100 * least_excess);
+  if (least_excess <= most_excess)
+    return fmt::format("{} intersections were drawn apart, but layers were left without a gap", report.intersections_before);
+  return fmt::format("{} intersections, with {} nodes inside solids, can only be drawn apart by stretching or squeezing edges by {:.1f} %",
+                     report.intersections_before, report.inside_solids_before, 100 * least_excess);
 }
 
 }  // namespace
@@ -74,13 +76,14 @@ UntangleReport untangle(const UntangleInput& input, std::span<Vec3> x, const Unt
     found_one = true;
     if (quality.excess > options.most_excess || quality.gap <= 0.0) continue;
     report.gap = quality.gap;
-    report.inside_solids_after = count_inside_solids(input, trial, deep_share * input.contact.thickness);
+    const double deep = std::max(input.contact.touch_tolerance, deep_share * input.contact.thickness);
+    report.inside_solids_after = count_inside_solids(input, trial, deep);
     report.stretch_after = worst_stretch(input.surface, input.rest, trial);
     measure(start, trial, report);
     std::ranges::copy(trial, x.begin());
     return report;
   }
-  report.status = {Outcome::max_iterations, why_not(report, least_excess)};
+  report.status = {Outcome::max_iterations, why_not(report, least_excess, options.most_excess)};
   return report;
 }
 

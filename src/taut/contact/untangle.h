@@ -4,9 +4,8 @@
 //   1  separate  passes until the exact check (intersection.h) finds nothing: nodes at a contour move down the gradient of its length
 //                (contour_gradient.h), whole spots go back the way they came (contour_regions.h), nodes inside analytic solids go to the
 //                nearest point of the surface, and the edges' lengths are projected back (edge_lengths.h)
-//   2  settle    free of intersections, it is kept so: rounds of ClothContact::resolve (cloth_contact.h) without friction push layers to
-//   their
-//                thickness apart and restore lengths, each on a way that is proved free
+//   2  settle    free of intersections, it is kept so: rounds of ClothContact::resolve (cloth_contact.h) without friction push layers
+//                to their thickness apart and restore lengths, each on a way that is proved free
 //
 // Separation may end in a minimum that is not zero: a ring that another cloth passes through, two sheets crossed from border to border,
 // cloth inside a closed mesh. Several ways of stepping are tried from the same start, each up to `most_passes` passes. What cannot be
@@ -41,7 +40,7 @@ struct UntangleReport {
   Status status;                                     // not ok: nothing was moved, and the message says why
   Index intersections_before = 0;                    // pairs of an edge and a triangle
   Index inside_solids_before = 0;                    // nodes inside analytic solids, beyond their thickness or contact.touch_tolerance
-  Index inside_solids_after = 0;                     // still deeper than a twentieth of contact.thickness
+  Index inside_solids_after = 0;                     // the same, and deeper than a twentieth of contact.thickness
   int attempts = 0, passes = 0, rounds = 0;          // of all attempts; of settling
   Index moved = 0;                                   // nodes
   double largest = 0.0, mean = 0.0;                  // m: displacements; mean of the moved nodes

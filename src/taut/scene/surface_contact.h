@@ -71,7 +71,7 @@ class SurfaceContact {
   std::vector<std::uint8_t> held_;
 };
 
-// "drew 12 intersections apart: ..." in one line.
+// "untangled: 12 intersections at the start, none now; ..." in one line.
 std::string describe(const UntangleReport& report);
 
 }  // namespace taut

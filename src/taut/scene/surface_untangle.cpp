@@ -67,15 +67,11 @@ void SurfaceContact::untangle_start(const Scene& scene, ClothModel& cloth) {
 
 std::string describe(const UntangleReport& report) {
   if (report.moved == 0) return "nothing to untangle at the start: no intersections, no node inside a solid";
-  std::string text = fmt::format("untangled: {} intersections at the start, none now; {} nodes taken out of solids",
-                                 report.intersections_before, report.inside_solids_before - report.inside_solids_after);
-  if (report.inside_solids_after > 0) text += fmt::format(", {} are still inside", report.inside_solids_after);
-  return text +
-         fmt::format(
-             "; moved {} nodes, by up to {:.3g} mm, {:.3g} mm on average; worst stretch {:.2g} % before, {:.2g} % now; layers at least "
-             "{:.2g} mm apart ({} passes)",
-             report.moved, 1e3 * report.largest, 1e3 * report.mean, 100 * report.stretch_before, 100 * report.stretch_after,
-             1e3 * report.gap, report.passes);
+  return fmt::format(
+      "untangled: {} intersections at the start, none now; {} nodes inside solids, {} now; moved {} nodes, by up to {:.3g} mm, {:.3g} mm on "
+      "average; worst stretch {:.2g} % before, {:.2g} % now; layers at least {:.2g} mm apart ({} passes)",
+      report.intersections_before, report.inside_solids_before, report.inside_solids_after, report.moved, 1e3 * report.largest,
+      1e3 * report.mean, 100 * report.stretch_before, 100 * report.stretch_after, 1e3 * report.gap, report.passes);
 }
 
 }  // namespace taut
