@@ -4,8 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include "taut/contact/cloth_contact.h"
-
 namespace taut {
 namespace {
 

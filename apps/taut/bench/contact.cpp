@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 
 #include "bench/benches.h"
 #include "bench/table.h"
@@ -117,6 +118,7 @@ class FrameJudge {
     const ChildEnd end =
         run_child({program_, "--solid-from", std::to_string(simulation.cloth().nodes()), file.string()}, std::chrono::minutes(5));
     std::filesystem::remove(file);
+    if (end.outcome == ChildEnd::Outcome::not_found) throw InputError(fmt::format("there is no program '{}'; give --judge another", program_));
     if (end.outcome != ChildEnd::Outcome::exited || end.code > 1)
       throw InputError(fmt::format("the judge {} could not judge a frame: {}", program_, end.errors));
     ++trial.judged;
@@ -127,9 +129,17 @@ class FrameJudge {
   std::string program_;
 };
 
-Trial run_trial(const std::string& scene, const BenchOptions& options, int seed) {
-  std::vector<std::string> settings;
-  Scene read = read_scene(fmt::format("{}/{}.toml", options.scenes, scene), settings);
+// The scene, unless what it needs is not there (the meshes of `body`).
+std::optional<Scene> readable_scene(const std::string& scene, const BenchOptions& options) {
+  try {
+    return read_scene(fmt::format("{}/{}.toml", options.scenes, scene));
+  } catch (const InputError& error) {
+    fmt::print("{:<16} not run: {}\n", scene, error.what());
+    return {};
+  }
+}
+
+Trial run_trial(Scene read, const BenchOptions& options, int seed) {
   for (Cloth& cloth : read.cloths) {
     if (seed == 0) continue;
     cloth.jitter = std::max(cloth.jitter, 1e-4);
@@ -168,14 +178,10 @@ Json stress(const BenchOptions& options) {
   for (const char* scene : contact_scenes) {
     if (!options.methods.empty() && !std::ranges::count(options.methods, scene)) continue;
     if (!std::filesystem::exists(fmt::format("{}/{}.toml", options.scenes, scene))) continue;
+    const std::optional<Scene> read = readable_scene(scene, options);
+    if (!read) continue;
     for (int seed = 0; seed <= options.stress; ++seed) {
-      Trial trial;
-      try {
-        trial = run_trial(scene, options, seed);
-      } catch (const InputError& error) {
-        fmt::print("{:<16} not run: {}\n", scene, error.what());
-        break;
-      }
+      const Trial trial = run_trial(*read, options, seed);
       const double share = trial.node_steps > 0 ? double(trial.zone_steps) / double(trial.node_steps) : 0.0;
       fmt::print(
           "{:<16} seed {:>2}: {} steps in {:.0f} s, {} intersections, {}{:.2f} % of node-steps in zones, at most {} pairs pushing, "

@@ -31,16 +31,9 @@
 
 namespace taut {
 
-// A cloth or a solid's mesh, in the order of the surface's parts.
-struct CollisionBody {
-  std::string name;
-  bool is_solid = false;
-  double thickness = 0.0;  // m, of a solid: kept to cloth; 0: as cloth to cloth
-  double friction = 0.0;   // of a solid with cloth
-};
-
 struct ClothContactStep {
   std::span<const Vec3> x0;              // one each a vertex of the surface, like all that follows
+  std::span<const Vec3> lever;           // m: y of contact/angular_momentum.h
   std::span<const double> inverse_mass;  // 1/kg, 0 for what is held
   std::span<const std::uint8_t> held;    // not 0: ends where x1 says
   const SolidContact* solids = nullptr;  // analytic ones, begun for this step; its nodes are the first vertices

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "taut/contact/cloth_contact.h"
-
 namespace taut {
 
 namespace {

@@ -6,6 +6,7 @@
 //   a ContactPair                   goes before both
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "taut/base/types.h"
@@ -13,7 +14,13 @@
 
 namespace taut {
 
-struct CollisionBody;
+// A cloth or a solid's mesh, in the order of the surface's parts.
+struct CollisionBody {
+  std::string name;
+  bool is_solid = false;
+  double thickness = 0.0;  // m, of a solid: kept to cloth; 0: as cloth to cloth
+  double friction = 0.0;   // of a solid with cloth
+};
 
 struct PairLaw {
   double thickness = 0.0, friction = 0.0;
@@ -21,7 +28,7 @@ struct PairLaw {
 
 class PairLaws {
  public:
-  // Pairs that name something else than these bodies (an analytic solid) are passed over.
+  // At least one body. Pairs that name something else than these bodies (an analytic solid) are passed over.
   PairLaws(const ContactOptions& options, std::span<const CollisionBody> bodies);
   const PairLaw& of(Index body, Index other) const { return laws_[static_cast<std::size_t>(body * bodies_ + other)]; }
   double smallest_thickness() const;

@@ -4,10 +4,10 @@
 
 #include <random>
 
-#include "taut/base/checksum.h"
 #include "taut/base/error.h"
 #include "taut/force/cloth_springs.h"
 #include "taut/force/explicit_split.h"
+#include "taut/mesh/mesh_sum.h"
 #include "taut/mesh/topology.h"
 #include "taut/scene/cloth_shape.h"
 
@@ -49,13 +49,6 @@ std::vector<Index> selected_nodes(const Cloth& cloth, const NodeSelection& where
   std::sort(nodes.begin(), nodes.end());
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
   return nodes;
-}
-
-std::uint64_t sum_of(const TriangleMesh& mesh) {
-  Checksum sum;
-  sum.add_items(std::span<const Vec3>(mesh.positions));
-  sum.add_items(std::span<const Triangle>(mesh.triangles));
-  return sum.value();
 }
 
 Vec3 PinnedNodes::target(std::size_t k, double time) const {

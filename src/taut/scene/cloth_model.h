@@ -19,9 +19,6 @@ struct ClothPart {
   std::uint64_t file_sum = 0;  // of what its mesh file holds (base/checksum.h); 0: it has none
 };
 
-// Of vertices and triangles, what a simulation takes from a mesh file (base/checksum.h).
-std::uint64_t sum_of(const TriangleMesh& mesh);
-
 // Ascending, each once.
 std::vector<Index> selected_nodes(const Cloth& cloth, const NodeSelection& where);
 

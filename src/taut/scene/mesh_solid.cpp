@@ -7,8 +7,8 @@
 #include "taut/base/error.h"
 #include "taut/io/mesh_file.h"
 #include "taut/io/motion_file.h"
+#include "taut/mesh/mesh_sum.h"
 #include "taut/mesh/topology.h"
-#include "taut/scene/cloth_model.h"
 
 namespace taut {
 
