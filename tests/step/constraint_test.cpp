@@ -135,7 +135,8 @@ TEST(Bdf2, StepAfterACorrectionIsOneOfEuler) {
   const Vec3 end = bdf2.stepper->x_end()[1], speed = bdf2.stepper->v_end()[1], moved(0.001, -0.002, 0.003);
   std::vector<Vec3> corrected(bdf2.stepper->x_end().begin(), bdf2.stepper->x_end().end());
   corrected[1] += moved;
-  bdf2.stepper->commit(bdf2.state, corrected);
+  bdf2.stepper->commit(bdf2.state);
+  bdf2.stepper->correct(bdf2.state, corrected, bdf2.stepper->h());
   EXPECT_EQ(bdf2.state.x[1], corrected[1]);
   EXPECT_LT((bdf2.state.v[1] - speed - moved / h).norm(), 1e-12);
   EXPECT_LT((bdf2.state.x[1] - end - moved).norm(), 1e-15);

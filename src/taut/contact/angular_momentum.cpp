@@ -73,10 +73,10 @@ Vec3 least_angle(const Turn& turn) {
 }  // namespace
 
 void restore_angular_momentum(std::span<const ContactRow> rows, std::span<const double> mass, std::span<const double> inverse_mass,
-                              std::span<const Vec3> x0, std::span<Vec3> x1, std::span<std::uint8_t> moved) {
+                              std::span<const Vec3> lever, std::span<Vec3> x1, std::span<std::uint8_t> moved) {
   if (std::ranges::none_of(rows, has_pushed)) return;
   Islands islands(rows, inverse_mass);
-  std::vector<Index> turn_of(x0.size(), -1);  // of islands, at their least node
+  std::vector<Index> turn_of(lever.size(), -1);  // of islands, at their least node
   std::vector<Turn> turns;
   std::vector<std::pair<Index, Index>> members;  // node and its turn
   const auto add = [&](const ContactRow& row) {
@@ -85,24 +85,24 @@ void restore_angular_momentum(std::span<const ContactRow> rows, std::span<const 
     const Index island = islands.island(*free);
     if (islands.is_attached(island)) return;
     if (turn_of[island] < 0) turn_of[island] = static_cast<Index>(turns.size()), turns.emplace_back();
-    turns[turn_of[island]].missing -= row.start.cross(row.pushed);
+    turns[turn_of[island]].missing -= separation(row, lever).cross(row.pushed);
   };
   for (const ContactRow& row : rows) add(row);
   if (turns.empty()) return;
-  for (Index node = 0; node < std::ssize(x0); ++node)
+  for (Index node = 0; node < std::ssize(lever); ++node)
     if (const Index k = turn_of[islands.island(node)]; k >= 0) members.emplace_back(node, k);
   for (const auto& [node, k] : members) {
     turns[k].mass += mass[node];
-    turns[k].centre += mass[node] * x0[node];
+    turns[k].centre += mass[node] * lever[node];
   }
   for (Turn& turn : turns) turn.centre /= turn.mass;
   for (const auto& [node, k] : members) {
-    const Vec3 r = x0[node] - turns[k].centre;
+    const Vec3 r = lever[node] - turns[k].centre;
     turns[k].inertia += mass[node] * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
   }
   for (Turn& turn : turns) turn.angle = least_angle(turn);
   for (const auto& [node, k] : members) {
-    const Vec3 change = turns[k].angle.cross(x0[node] - turns[k].centre);
+    const Vec3 change = turns[k].angle.cross(lever[node] - turns[k].centre);
     if (change == Vec3::Zero()) continue;
     x1[node] += change;
     moved[node] = 1;

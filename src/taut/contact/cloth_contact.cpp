@@ -50,7 +50,7 @@ struct ClothContact::Work {
 
   void meet_rows(int iterations, double tolerance) {
     satisfy_rows(rows, x1, awake, moved, iterations, tolerance);
-    restore_angular_momentum(rows, mass, step.inverse_mass, step.x0, x1, moved);
+    restore_angular_momentum(rows, mass, step.inverse_mass, step.lever, x1, moved);
     std::ranges::fill(awake, std::uint8_t{0});
   }
   void forget_moved() { std::ranges::fill(moved, std::uint8_t{0}); }

@@ -76,10 +76,10 @@ std::string SurfaceContact::places(std::span<const Intersection> found) const {
 void SurfaceContact::refuse_intersections(std::span<const Vec3> start) {
   const std::vector<Intersection> found = intersections(0.0, start);
   if (found.empty()) return;
-  throw InputError(
-      fmt::format("cloth intersects at the start, at {} places:{}\nMove them apart, let --untangle (contact.untangle = true) do it, or start as "
-                  "it is with contact.allow_intersections = true; what has passed through may then stay so",
-                  found.size(), places(found)));
+  throw InputError(fmt::format(
+      "cloth intersects at the start, at {} places:{}\nMove them apart, let --untangle (contact.untangle = true) do it, or start as "
+      "it is with contact.allow_intersections = true; what has passed through may then stay so",
+      found.size(), places(found)));
 }
 
 void SurfaceContact::hold_zones(const State& state, double h, ConstraintSet& constraints) const {
@@ -98,15 +98,17 @@ void SurfaceContact::weigh_nodes(const ConstraintSet& pins) {
   }
 }
 
-Status SurfaceContact::correct(double t, double h, std::span<const Vec3> x0, const ConstraintSet& pins, const SolidContact& solids,
-                               std::span<Vec3> x_end, bool& changed) {
+Status SurfaceContact::correct(double t, double h, std::span<const Vec3> x0, std::span<const Vec3> v_end, const ConstraintSet& pins,
+                               const SolidContact& solids, std::span<Vec3> x_end, bool& changed) {
   weigh_nodes(pins);
   x0_.assign(x0.begin(), x0.end());
   x1_.assign(x_end.begin(), x_end.end());
   for (auto* x : {&x0_, &x1_}) x->resize(mass_.size());
   place_solids(t, x0_);
   place_solids(t + h, x1_);
-  const Status status = contact_->resolve({x0_, inverse_mass_, held_, &solids}, x1_);
+  lever_ = x0_;
+  for (Index i = 0; i < nodes_; ++i) lever_[i] = x_end[i] - h * v_end[i];
+  const Status status = contact_->resolve({x0_, lever_, inverse_mass_, held_, &solids}, x1_);
   if (!status.ok()) return status;
   for (Index i = 0; i < nodes_; ++i) {
     if (x1_[i] == x_end[i]) continue;

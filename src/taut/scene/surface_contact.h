@@ -30,9 +30,10 @@ class SurfaceContact {
 
   void hold_zones(const State& state, double h, ConstraintSet& constraints) const;
 
-  // The step [t, t + h] from x0. pins: what holds nodes whatever happens. x_end is changed; true in `changed` if any node was moved.
-  Status correct(double t, double h, std::span<const Vec3> x0, const ConstraintSet& pins, const SolidContact& solids, std::span<Vec3> x_end,
-                 bool& changed);
+  // The step [t, t + h] from x0 to x_end with v_end, however it was solved. pins: what holds nodes whatever happens. x_end is changed; true
+  // in `changed` if any node was moved, for which v_end must then change by as much over h.
+  Status correct(double t, double h, std::span<const Vec3> x0, std::span<const Vec3> v_end, const ConstraintSet& pins,
+                 const SolidContact& solids, std::span<Vec3> x_end, bool& changed);
   // The corrected step counts: its zones are held in the next.
   void keep();
 
@@ -66,7 +67,7 @@ class SurfaceContact {
   std::unique_ptr<ClothContact> contact_;
   ZoneState kept_;
   std::optional<UntangleReport> untangled_;
-  std::vector<Vec3> x0_, x1_;
+  std::vector<Vec3> x0_, x1_, lever_;
   std::vector<double> inverse_mass_;
   std::vector<std::uint8_t> held_;
 };

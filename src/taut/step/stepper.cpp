@@ -83,6 +83,7 @@ void Stepper::begin(const State& state, double h) {
   Timer timer;
   state_ = &state;
   h_ = h;
+  solved_for_ = integrator_->unknown(state);
   if (h > core_h_) choose_core(h);
   external_.evaluate(state.time, state.x, state.v);
   integrator_->assemble(assembler_, external_, state, h, a_, b_);
@@ -191,13 +192,12 @@ LinearSystem Stepper::system() const {
 }
 
 void Stepper::commit(State& state) {
-  const std::string solved_for = integrator_->unknown(state);
   state.x_prev = std::exchange(state.x, x_end_);
   state.v_prev = std::exchange(state.v, v_end_);
   state.last = unknown_;
   state.time += h_;
   state.has_previous = true;
-  forget_other_unknown(state, solved_for);
+  forget_other_unknown(state, solved_for_);
 }
 
 // A velocity change is no guess for a displacement: BDF2 switches between the two.
@@ -211,16 +211,14 @@ void Stepper::start_afresh(State& state) const {
   forget_other_unknown(state, solved_for);
 }
 
-void Stepper::commit(State& state, std::span<const Vec3> corrected) {
-  const std::string solved_for = integrator_->unknown(state);
-  commit(state);
+void Stepper::correct(State& state, std::span<const Vec3> corrected, double h) const {
   for (std::size_t i = 0; i < corrected.size(); ++i) {
-    state.v[i] += (corrected[i] - state.x[i]) / h_;
+    state.v[i] += (corrected[i] - state.x[i]) / h;
     state.x[i] = corrected[i];
   }
   state.has_previous = false;
   state.last = unknown_;
-  forget_other_unknown(state, solved_for);
+  forget_other_unknown(state, solved_for_);
 }
 
 }  // namespace taut

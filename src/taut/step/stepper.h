@@ -6,13 +6,15 @@
 //   solve(constraints, impulses) the unknown, the end positions and velocities, the constraint impulses; may be repeated. One linear solve,
 //   or
 //                                with a nonlinear integrator as many as Newton's method takes
-//   commit(state, ...)           takes the last solve's end state (or a corrected one) over
+//   commit(state)                takes the last solve's end state over
+//   correct(state, x, h)         takes positions over that contact has corrected since
 //
 // Constraint impulse (N s, on each node): j = (I - S)(A u - b), scaled to an impulse (docs/mathematics.md, 3.6). A positive n·j pushes
 // along n.
 
 #include <cstdint>
 #include <memory>
+#include <string>
 
 #include "taut/solve/solver.h"
 #include "taut/step/integrator.h"
@@ -36,10 +38,12 @@ class Stepper {
   std::span<const Vec3> v_end() const { return v_end_; }
   std::span<const Vec3> constraint_impulse() const { return impulse_; }
 
-  // Ends the step: state becomes (x_end, v_end) at time + h. `corrected` positions (contact) replace x_end, the velocity is changed by what
-  // they moved over h, and a multistep method starts afresh.
+  // Ends the step: state becomes (x_end, v_end) at time + h.
   void commit(State& state);
-  void commit(State& state, std::span<const Vec3> corrected);
+  // After that: `corrected` positions replace the state's, the velocity is changed by what they moved over h (s; of a step in parts, of the
+  // whole), and a multistep method starts afresh.
+  void correct(State& state, std::span<const Vec3> corrected, double h) const;
+  double h() const { return h_; }
   // The next step is of another size than the last: a multistep method must not use the step before.
   void start_afresh(State& state) const;
 
@@ -91,6 +95,7 @@ class Stepper {
   const State* state_ = nullptr;
   const ConstraintSet* constraints_ = nullptr;
   double h_ = 0.0, assemble_ms_ = 0.0;
+  std::string solved_for_;  // the unknown of the step that began
   BlockCsr a_;
   BlockCsr relinearised_a_;  // of nonlinear integrators; a_ stays for the next solve
   const BlockCsr* current_a_ = nullptr;
