@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <optional>
 #include <set>
 
 #include "taut/base/parallel.h"
@@ -20,7 +21,7 @@ constexpr double separation_share = 1e-2;  // of the thickness: what is surely k
 constexpr double gap_share = 0.5;          // of the thickness: where colliding pairs should end
 constexpr double parting_share = 0.2;      // of the thickness: how much further apart than at the start they need to end
 constexpr double tolerance_share = 1e-3;   // of the thickness: rows this well met are met
-constexpr int repulsion_iterations = 8, impulse_iterations = 12;
+constexpr int repulsion_iterations = 8, impulse_iterations = 6;
 constexpr int full_sweeps = 4;  // from then on colliding pairs need to end only half as far apart, and again
 constexpr int most_zone_rounds = 1000;
 constexpr double fit_share = 0.1;  // of the thickness: how well a zone has to fit what it is attached to
@@ -38,18 +39,19 @@ struct ClothContact::Work {
   const ClothContactStep& step;
   std::span<Vec3> x1;
   RigidZones zones;
-  std::vector<ContactRow> rows;
+  std::vector<ContactRow>& rows;  // in the places of slabs, then those of collisions
+  std::optional<RowSlabs> slabs;
   Trouble trouble;
   std::vector<std::uint8_t> moved;  // since the last search
   std::vector<std::uint8_t> awake;  // for the rows that are to be met
 
   std::span<const double> mass;
 
-  Work(const ClothContactStep& the_step, std::span<Vec3> end, std::span<const double> masses)
-      : step(the_step), x1(end), zones(masses, the_step.held), moved(end.size()), awake(end.size(), 1), mass(masses) {}
+  Work(const ClothContactStep& the_step, std::span<Vec3> end, std::span<const double> masses, std::vector<ContactRow>& the_rows)
+      : step(the_step), x1(end), zones(masses, the_step.held), rows(the_rows), moved(end.size()), awake(end.size(), 1), mass(masses) {}
 
   void meet_rows(int iterations, double tolerance) {
-    satisfy_rows(rows, x1, awake, moved, iterations, tolerance);
+    satisfy_rows(rows, *slabs, x1, awake, moved, iterations, tolerance);
     restore_angular_momentum(rows, mass, step.inverse_mass, step.lever, x1, moved);
     std::ranges::fill(awake, std::uint8_t{0});
   }
@@ -80,7 +82,7 @@ Status ClothContact::resolve(const ClothContactStep& step, std::span<Vec3> x1) {
   zones_ = {};
   trouble_.clear();
   search_.reset_count();
-  Work work(step, x1, mass_);
+  Work work(step, x1, mass_, rows_);
   repel(work);
   bool settled = false;
   for (int round = 0; round <= options_.sweeps && !settled; ++round) settled = sweep(work, round);
@@ -95,12 +97,20 @@ void ClothContact::repel(Work& work) {
   const std::vector<NearPair> near =
       search_.near(work.step.x0, work.x1, laws_.largest_thickness(), [&](const CollisionPair& pair) { return thickness_of(pair); });
   counts_.near = static_cast<int>(near.size());
-  work.rows.reserve(near.size());
-  for (const NearPair& pair : near) {
-    work.rows.push_back(repulsion_row(pair, thickness_of(pair.pair), friction_of(pair.pair)));
-  }
-  if (work.step.solids) add_touched(work);
-  for (ContactRow& row : work.rows) weigh(row, work.step.inverse_mass, work.step.x0);
+  const std::vector<ContactRow> touched = touched_rows(work);
+  std::vector<RowSlabs::Vertices> vertices;
+  vertices.reserve(near.size() + touched.size());
+  for (const NearPair& pair : near) vertices.push_back(pair.pair.node);
+  for (const ContactRow& row : touched) vertices.push_back(row.node);
+  work.slabs.emplace(vertices, work.step.x0);
+  work.rows.resize(vertices.size());
+  parallel_for(static_cast<Index>(vertices.size()), node_grain, [&](Index begin, Index end) {
+    for (Index k = begin; k < end; ++k) {
+      ContactRow& row = work.rows[work.slabs->place(k)];
+      row = k < std::ssize(near) ? repulsion_row(near[k], thickness_of(near[k].pair), friction_of(near[k].pair)) : touched[k - near.size()];
+      weigh(row, work.step.inverse_mass, work.step.x0);
+    }
+  });
   counts_.near_ms += timer.lap();
   work.meet_rows(repulsion_iterations, tolerance_share * options_.thickness);
   counts_.impulse_ms += timer.lap();
@@ -108,12 +118,15 @@ void ClothContact::repel(Work& work) {
 
 // Nodes that touch analytic solids. Where the solve has put them they are well placed, even if a little inside (solid_contact.h): pushes
 // must not take them further in.
-void ClothContact::add_touched(Work& work) const {
+std::vector<ContactRow> ClothContact::touched_rows(const Work& work) const {
+  std::vector<ContactRow> rows;
+  if (!work.step.solids) return rows;
   for (const auto& [node, obstacle] : work.step.solids->touched(work.x1)) {
     if (work.step.held[node]) continue;
-    ContactRow& row = work.rows.emplace_back(obstacle_row(node, obstacle, work.step.x0[node]));
+    ContactRow& row = rows.emplace_back(obstacle_row(node, obstacle, work.step.x0[node]));
     row.target = std::min(row.target, row.normal.dot(work.x1[node]));
   }
+  return rows;
 }
 
 // Collisions of the pairs with a node in `moved` (all, where it is empty), and those nodes' obstacles.

@@ -90,7 +90,7 @@ class ClothContact {
   double friction_of(const CollisionPair& pair) const { return law_of(pair).friction; }
   bool meets_solid(const CollisionPair& pair) const;
   void repel(Work& work);
-  void add_touched(Work& work) const;
+  std::vector<ContactRow> touched_rows(const Work& work) const;
   bool sweep(Work& work, int round);
   void find_trouble(Work& work, std::span<const std::uint8_t> moved);
   Status hold(Work& work);
@@ -110,6 +110,7 @@ class ClothContact {
   PairSearch search_;
   ClothContactCounts counts_;
   ZoneState zones_;
+  std::vector<ContactRow> rows_;  // of the last resolve; kept for its memory
   std::vector<std::uint8_t> touched_;
   std::vector<Index> trouble_;
 };

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "taut/base/parallel.h"
+
 namespace taut {
 
 namespace {
@@ -33,7 +35,7 @@ struct RowNodes {
     for (std::size_t k = 0; k < count; ++k) {
       if (row.share[k] == 0.0) continue;
       x1[row.node[k]] = x[k];
-      moved[row.node[k]] = 1;
+      if (!moved[row.node[k]]) moved[row.node[k]] = 1;
     }
   }
 };
@@ -81,7 +83,21 @@ bool is_awake(const ContactRow& row, std::span<const std::uint8_t> awake) {
 }
 
 void wake(const ContactRow& row, std::span<std::uint8_t> awake) {
-  for (std::size_t k = 0; k < 4 && row.node[k] >= 0; ++k) awake[row.node[k]] = 1;
+  for (std::size_t k = 0; k < 4 && row.node[k] >= 0; ++k)
+    if (!awake[row.node[k]]) awake[row.node[k]] = 1;  // not written needlessly: threads share the line
+}
+
+// In this order. Returns the largest motion of any.
+double satisfy_group(std::span<ContactRow> group, std::span<Vec3> x1, std::span<std::uint8_t> awake, std::span<std::uint8_t> moved,
+                     double tolerance) {
+  double largest = 0.0;
+  for (ContactRow& row : group) {
+    if (row.inverse_mass == 0.0 || !is_awake(row, awake)) continue;
+    const double motion = satisfy(row, x1, moved, tolerance);
+    if (motion > 0.0) wake(row, awake);
+    largest = std::max(largest, motion);
+  }
+  return largest;
 }
 
 }  // namespace
@@ -101,18 +117,23 @@ void weigh(ContactRow& row, std::span<const double> inverse_mass, std::span<cons
   row.start = separation(row, x0);
 }
 
-void satisfy_rows(std::span<ContactRow> rows, std::span<Vec3> x1, std::span<std::uint8_t> awake, std::span<std::uint8_t> moved,
-                  int iterations, double tolerance) {
+void satisfy_rows(std::span<ContactRow> rows, const RowSlabs& slabs, std::span<Vec3> x1, std::span<std::uint8_t> awake,
+                  std::span<std::uint8_t> moved, int iterations, double tolerance) {
   for (ContactRow& row : rows) row.pushed.setZero();
+  const auto group = [&](Index g) {
+    const Index end = g + 1 == RowSlabs::groups ? static_cast<Index>(rows.size()) : slabs.start(g + 1);
+    return rows.subspan(slabs.start(g), end - slabs.start(g));
+  };
+  std::array<double, RowSlabs::groups> motion;
   for (int k = 0; k < iterations; ++k) {
-    double largest = 0.0;
-    for (ContactRow& row : rows) {
-      if (row.inverse_mass == 0.0 || !is_awake(row, awake)) continue;
-      const double motion = satisfy(row, x1, moved, tolerance);
-      if (motion > 0.0) wake(row, awake);
-      largest = std::max(largest, motion);
+    motion.fill(0.0);
+    for (Index phase = 0; phase < RowSlabs::phases; ++phase) {
+      const Index first = slabs.first_group(phase);
+      parallel_for(slabs.first_group(phase + 1) - first, 1, [&](Index begin, Index end) {
+        for (Index g = first + begin; g < first + end; ++g) motion[g] = satisfy_group(group(g), x1, awake, moved, tolerance);
+      });
     }
-    if (largest <= tolerance) return;
+    if (*std::ranges::max_element(motion) <= tolerance) return;
   }
 }
 

@@ -15,21 +15,22 @@
 #include <vector>
 
 #include "taut/base/types.h"
+#include "taut/contact/row_slabs.h"
 
 namespace taut {
 
 struct ContactRow {
+  // What every visit reads comes first.
   std::array<Index, 4> node{-1, -1, -1, -1};  // -1: fewer than four
   std::array<double, 4> weight{};
+  double inverse_mass = 0.0;  // 1/kg: sum_k weight_k² / m_k; 0: nothing here can move. Filled by weigh
   Vec3 normal = Vec3::UnitZ();
   double target = 0.0;
-  double friction = 0.0;        // mu
-  Vec3 carried = Vec3::Zero();  // m: tangential motion over the step that friction aims at; 0 but on a moving solid
-  // Filled by weigh:
-  double inverse_mass = 0.0;      // 1/kg: sum_k weight_k² / m_k; 0: nothing here can move
-  std::array<double, 4> share{};  // 1/kg: weight_k / m_k
-  Vec3 start = Vec3::Zero();      // m: r(x0)
   double lambda = 0.0;
+  std::array<double, 4> share{};  // 1/kg: weight_k / m_k. Filled by weigh
+  double friction = 0.0;          // mu
+  Vec3 carried = Vec3::Zero();    // m: tangential motion over the step that friction aims at; 0 but on a moving solid
+  Vec3 start = Vec3::Zero();      // m: r(x0). Filled by weigh
   Vec3 tangential = Vec3::Zero();
   Vec3 pushed = Vec3::Zero();  // kg m: what the last satisfy_rows gave in all
 };
@@ -40,13 +41,13 @@ Vec3 separation(const ContactRow& row, std::span<const Vec3> x);
 // x0: m, where the step began.
 void weigh(ContactRow& row, std::span<const double> inverse_mass, std::span<const Vec3> x0);
 
-// Meets the rows as well as `iterations` rounds of projected Gauss-Seidel can, in the order of the rows, by impulses that keep momentum:
-// x1_k += weight_k / m_k (dlambda n + dtangential). Only rows with a node marked in `awake` are looked at, and the nodes that a row moves
-// awake: what settled before and is not disturbed stays as it is. Changes that would move a row's points by less than a tenth of
-// `tolerance` (m) are not made; it ends early when none is greater than that. moved[k] = 1 for nodes that it moved. Source: Moreau's time
-// stepping, solved as in Otaduy, Tamstorf, Steinemann & Gross 2009, "Implicit contact handling for deformable objects"; Bridson et al. 2002
-// apply each impulse once and never take it back, which in a stack of layers throws the upper ones off.
-void satisfy_rows(std::span<ContactRow> rows, std::span<Vec3> x1, std::span<std::uint8_t> awake, std::span<std::uint8_t> moved,
-                  int iterations, double tolerance);
+// Meets the rows as well as `iterations` rounds of projected Gauss-Seidel can, in the order of `slabs`, where they are in their places, by
+// impulses that keep momentum: x1_k += weight_k / m_k (dlambda n + dtangential). Only rows with a node marked in `awake` are looked at, and
+// the nodes that a row moves awake: what settled before and is not disturbed stays as it is. Changes that would move a row's points by less
+// than a tenth of `tolerance` (m) are not made; it ends early when none is greater than that. moved[k] = 1 for nodes that it moved. Source:
+// Moreau's time stepping, solved as in Otaduy, Tamstorf, Steinemann & Gross 2009, "Implicit contact handling for deformable objects";
+// Bridson et al. 2002 apply each impulse once and never take it back, which in a stack of layers throws the upper ones off.
+void satisfy_rows(std::span<ContactRow> rows, const RowSlabs& slabs, std::span<Vec3> x1, std::span<std::uint8_t> awake,
+                  std::span<std::uint8_t> moved, int iterations, double tolerance);
 
 }  // namespace taut

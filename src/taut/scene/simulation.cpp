@@ -109,11 +109,12 @@ Status Simulation::advance(double h, int halvings, StepRecord& record) {
 }
 
 Status Simulation::move(double h, int halvings, StepRecord& record) {
-  const Status status = try_step(h, record);
+  const bool may_halve = halvings < scene_.time.max_halvings;
+  double beyond = 0.0;
+  const Status status = try_step(h, may_halve, beyond, record);
   if (status.ok() && halvings == 0 && on_solved) on_solved(*this, last_summary_);
-  const double beyond = status.ok() ? overshoot() : 0.0;
-  const bool overshot = beyond > scene_.time.overshoot_limit;
-  if (overshot && halvings < scene_.time.max_halvings) return in_halves(h, halvings, record, &Simulation::move);
+  const bool overshot = status.ok() && beyond > scene_.time.overshoot_limit;
+  if (overshot && may_halve) return in_halves(h, halvings, record, &Simulation::move);
   // Without halving, as in the paper, it is the user's choice to accept what comes.
   if (overshot && scene_.time.max_halvings > 0) record.overshoot = std::max(record.overshoot, beyond);
   if (status.ok()) accept(record);
@@ -137,15 +138,15 @@ void Simulation::go_back(const Moment& before) {
   contact_.restore(before.contacts);
 }
 
-double Simulation::overshoot() const {
+double Simulation::largest_overshoot() const {
   if (stepper_.integrator().is_nonlinear()) return 0.0;  // it has iterated until the forces at the end agree
   double largest = 0.0;
   for (const SpringModel* model : cloth_.stretch_springs())
-    largest = std::max(largest, largest_overshoot(*model, state_.x, stepper_.x_end()));
+    largest = std::max(largest, taut::largest_overshoot(*model, state_.x, stepper_.x_end()));
   return largest;
 }
 
-Status Simulation::try_step(double h, StepRecord& record) {
+Status Simulation::try_step(double h, bool may_halve, double& overshoot, StepRecord& record) {
   pins_.reset(cloth_.nodes());
   cloth_.constrain_pins(state_.time, h, state_.x, pins_);
   held_ = pins_;
@@ -157,7 +158,7 @@ Status Simulation::try_step(double h, StepRecord& record) {
   for (std::size_t i = 0; i < predicted.size(); ++i) predicted[i] = state_.x[i] + h * state_.v[i];
   contact_.begin_step(state_.time, h, state_.x, predicted, held_);
   record.contact_ms += contact_timer.milliseconds();
-  return solve_passes(record);
+  return solve_passes(may_halve, overshoot, record);
 }
 
 void Simulation::accept(StepRecord& record) {
@@ -222,7 +223,8 @@ void Simulation::look_for_intersections(StepRecord& record) {
   record.check_ms = timer.milliseconds();
 }
 
-Status Simulation::solve_passes(StepRecord& record) {
+// Where the step may be halved, it ends with the first pass that overshoots: the others would be solved for nothing.
+Status Simulation::solve_passes(bool may_halve, double& overshoot, StepRecord& record) {
   SolveSummary summary;
   for (bool again = true; again;) {
     constraints_ = held_;
@@ -235,8 +237,9 @@ Status Simulation::solve_passes(StepRecord& record) {
     note_solve(summary, record);
     ++record.contact_passes;
     if (!summary.status.ok()) return summary.status;
+    overshoot = largest_overshoot();
     contact_timer.lap();
-    again = contact_.update(stepper_.x_end(), stepper_.constraint_impulse());
+    again = !(may_halve && overshoot > scene_.time.overshoot_limit) && contact_.update(stepper_.x_end(), stepper_.constraint_impulse());
     record.contact_ms += contact_timer.milliseconds();
   }
   record.dof = constraints_.free_dofs();

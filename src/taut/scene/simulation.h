@@ -103,14 +103,14 @@ class Simulation {
   Status move(double h, int halvings, StepRecord& record);
   Status in_halves(double h, int halvings, StepRecord& record, Status (Simulation::*go)(double, int, StepRecord&));
   void go_back(const Moment& before);
-  Status try_step(double h, StepRecord& record);
+  Status try_step(double h, bool may_halve, double& overshoot, StepRecord& record);
   void accept(StepRecord& record);
   Status keep_apart(const State& start, double h, bool in_parts, StepRecord& record);
   void note_moved_out(StepRecord& record) const;
   void note_surface_contact(StepRecord& record) const;
   void look_for_intersections(StepRecord& record);
-  double overshoot() const;
-  Status solve_passes(StepRecord& record);
+  double largest_overshoot() const;
+  Status solve_passes(bool may_halve, double& overshoot, StepRecord& record);
   SolveSummary solve_or_fall_back(StepRecord& record);
   void note_solve(const SolveSummary& summary, StepRecord& record) const;
   void note_state(StepRecord& record) const;
