@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <functional>
 
 #include "bench/benches.h"
@@ -48,7 +49,10 @@ int run_bench(const std::string& name, const BenchFunction& bench, const BenchAr
     draw_figure(bench_figure(report), arguments.plot);
     fmt::print("\ndrawn in {}\n", arguments.plot);
   }
-  return 0;
+  const auto failed = std::ranges::count_if(report["rows"], [](const Json& row) { return row.value("failed", false); });
+  if (failed == 0) return 0;
+  fmt::print(stderr, "taut: {} of {} runs had intersections: their lines above say which\n", failed, report["rows"].size());
+  return 1;
 }
 
 void add_roofline(CLI::App& parent, int& exit_code) {

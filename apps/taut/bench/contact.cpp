@@ -203,6 +203,7 @@ Json stress(const BenchOptions& options) {
                       {"kinetic_J", trial.kinetic_J},
                       {"judged_frames", trial.judged},
                       {"judged_intersecting", trial.judged_intersecting},
+                      {"failed", trial.intersections > 0 || trial.judged_intersecting > 0},
                       {"end", trial.end}});
     }
   }
