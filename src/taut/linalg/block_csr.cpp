@@ -138,6 +138,45 @@ TAUT_MULTIVERSION double rows_product_blocks(const RowView& a, Index begin, Inde
   return xax;
 }
 
+// How far ahead values are asked for, into the second-level cache.
+constexpr Index prefetch_distance = 4096 / sizeof(double);
+
+// The same where all blocks are 3x3, which needs fewer index lists. A row's x is gathered while the row before it is multiplied: what is
+// read there in other pieces than it was written in must have arrived in the cache.
+TAUT_MULTIVERSION double rows_product_3(const RowView& a, Index begin, Index end, const double* x, double* y) {
+  alignas(64) double gathered[2][gather_capacity + 4];
+  const auto is_short = [&](Index i) __attribute__((always_inline)) {
+    const Index first = a.row_start[i], last = a.row_start[i + 1];
+    return 3 * (last - first) <= gather_capacity && a.column_dof[last - 1] + 4 <= a.dofs;
+  };
+  const auto gather_row = [&](Index i) __attribute__((always_inline)) {
+    double* to = gathered[i % 2];
+    for (Index k = a.row_start[i]; k < a.row_start[i + 1]; ++k, to += 3) *reinterpret_cast<Four*>(to) = four(x + a.column_dof[k]);
+  };
+  double xax = 0.0;
+  bool is_gathered = begin < end && is_short(begin);
+  if (is_gathered) gather_row(begin);
+  for (Index i = begin; i < end; ++i) {
+    const bool is_next_gathered = i + 1 < end && is_short(i + 1);
+    if (is_next_gathered) gather_row(i + 1);
+    const double* row = a.values + a.value_start[i];
+    const Index first = a.row_start[i], last = a.row_start[i + 1], width = 3 * (last - first);
+    double s[3] = {};
+    if (is_gathered) {
+      for (Index k = 0; k < 3 * width; k += 8) __builtin_prefetch(row + prefetch_distance + k, 0, 2);
+      row_product<3>(row, width, gathered[i % 2], width, s);
+    } else {
+      row_product_in_pieces<3>(a, first, last, row, width, x, gathered[i % 2], s);
+    }
+    for (Index r = 0; r < 3; ++r) {
+      y[3 * i + r] = s[r];
+      xax += x[3 * i + r] * s[r];
+    }
+    is_gathered = is_next_gathered;
+  }
+  return xax;
+}
+
 // The same for 1x1 blocks.
 TAUT_MULTIVERSION double rows_product_1(const RowView& a, Index begin, Index end, const double* x, double* y) {
   double xax = 0.0;
@@ -156,7 +195,8 @@ double rows_product(const BlockCsr& a, Index begin, Index end, const double* x, 
   const BlockPattern& p = *a.pattern;
   const RowView view{p.row_start.data(), p.column.data(),      p.column_dof.data(), p.block_offset.data(),
                      p.dof_start.data(), p.value_start.data(), a.values.data(),     p.dofs()};
-  return p.uniform_dim == 1 ? rows_product_1(view, begin, end, x, y) : rows_product_blocks(view, begin, end, x, y);
+  if (p.uniform_dim == 1) return rows_product_1(view, begin, end, x, y);
+  return p.uniform_dim == 3 ? rows_product_3(view, begin, end, x, y) : rows_product_blocks(view, begin, end, x, y);
 }
 
 }  // namespace

@@ -8,8 +8,9 @@ namespace {
 
 class LayoutBuilder {
  public:
-  LayoutBuilder(const SupernodeTree& tree, const AnalyzedGraph& analyzed, Index slab_rows, Index column_group)
-      : tree_(tree), analyzed_(analyzed), slab_rows_(slab_rows), column_group_(column_group) {}
+  LayoutBuilder(const SupernodeTree& tree, const AnalyzedGraph& analyzed, Index slab_rows, Index column_group,
+                Offset (*packed_size)(const FrontShape&))
+      : tree_(tree), analyzed_(analyzed), slab_rows_(slab_rows), column_group_(column_group), packed_size_(packed_size) {}
 
   FactorLayout build() {
     layout_.front.resize(static_cast<std::size_t>(tree_.supernodes()));
@@ -54,21 +55,24 @@ class LayoutBuilder {
     Front& f = layout_.front[s];
     f.parent = tree_.parent[s];
     f.first_node = tree_.first[s], f.last_node = tree_.first[s + 1];
-    for (Index k = f.first_node; k < f.last_node; ++k) {
-      row_of_[k] = layout_.node_column[k] = f.pivots;
-      f.pivots += weight_at(k);
-    }
+    for (Index k = f.first_node; k < f.last_node; ++k) f.pivots += weight_at(k);
     f.shape.slab_rows = slab_rows_;
     f.shape.columns = (f.pivots + column_group_ - 1) / column_group_ * column_group_;
+    f.shape.padding = f.shape.columns - f.pivots;
+    Index next = f.shape.padding;
+    for (Index k = f.first_node; k < f.last_node; ++k) {
+      row_of_[k] = layout_.node_column[k] = next;
+      next += weight_at(k);
+    }
     f.shape.rows = f.shape.columns;
     for (const Index k : tree_.rows(s)) {
       row_of_[k] = f.shape.rows;
       f.shape.rows += weight_at(k);
     }
-    f.panel = layout_.panel_size;
+    f.packed = layout_.packed_size;
     f.vector = layout_.vector_size;
-    layout_.panel_size += f.shape.panel_size();
-    layout_.vector_size += Offset{f.shape.slabs()} * slab_rows_;
+    layout_.packed_size += packed_size_(f.shape);
+    layout_.vector_size += f.shape.vector_size();
     const double n = f.shape.columns, m = f.shape.rows - f.shape.columns;
     layout_.flops += n * n * n / 3.0 + n * n * m + n * m * m;
   }
@@ -115,6 +119,7 @@ class LayoutBuilder {
   const SupernodeTree& tree_;
   const AnalyzedGraph& analyzed_;
   const Index slab_rows_, column_group_;
+  Offset (*const packed_size_)(const FrontShape&);
   FactorLayout layout_;
   std::vector<Index> place_;   // of each node in the order
   std::vector<Index> row_of_;  // by place in the order: first row in the front at hand
@@ -122,8 +127,9 @@ class LayoutBuilder {
 
 }  // namespace
 
-FactorLayout make_factor_layout(const SupernodeTree& tree, const AnalyzedGraph& analyzed, Index slab_rows, Index column_group) {
-  return LayoutBuilder(tree, analyzed, slab_rows, column_group).build();
+FactorLayout make_factor_layout(const SupernodeTree& tree, const AnalyzedGraph& analyzed, Index slab_rows, Index column_group,
+                                Offset (*packed_size)(const FrontShape&)) {
+  return LayoutBuilder(tree, analyzed, slab_rows, column_group, packed_size).build();
 }
 
 Offset FactorLayout::bytes() const {

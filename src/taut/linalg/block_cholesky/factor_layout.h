@@ -2,13 +2,14 @@
 // Where everything of a factorisation lies in memory, planned once per analysis: panels, updates, vectors, and how children enter their
 // parents.
 //
-// Every supernode is a front (front_kernels.h). Its rows are its pivots, padded, then the unknowns of its row nodes, in the order of
+// Every supernode is a front (front_kernels.h). Its rows are padding and its pivots, then the unknowns of its row nodes, in the order of
 // elimination.
 //
-//   panels   one after the other in the order of elimination: the factor L, which the solves stream through
-//   updates  in an arena: an update lives from its front's elimination until its parent has taken it in; later ones reuse the place. Tasks
-//            that may run at the same time get places that do not overlap.
-//   vector   slabs() R entries a front: what the solves work on
+//   arena    panels, which live while their front is eliminated, and updates, which live until the parent has taken them in; later ones
+//   reuse the
+//            place, so most of this stays in a cache. Tasks that may run at the same time get places that do not overlap.
+//   packed   panels one after the other in the order of elimination: the factor L, which the solves stream through
+//   vector   vector_size() entries a front: what the solves work on
 //
 // Tasks: whole subtrees whose work is a small share of all, each eliminated by one thread in order; every front above them is a task of its
 // own, whose products are shared between threads. The shares depend on `threads`, so the plan does; the numbers that come out do not.
@@ -31,7 +32,8 @@ struct Front {
   Index child_begin = 0, child_end = 0;  // into FactorLayout::child
   Index piece_begin = 0, piece_end = 0;  // into FactorLayout::piece: how its update enters its parent ...
   Index piece_split = 0;                 // ... those before this one are pivots there
-  Offset panel = 0, update = 0, vector = 0;
+  Offset panel = 0, update = 0;          // in the arena
+  Offset packed = 0, vector = 0;
 };
 
 // A block of A below or on the diagonal, in the column of a pivot node.
@@ -61,15 +63,17 @@ struct FactorLayout {
   std::vector<BlockPlace> block;
   std::vector<FrontTask> task;
   TaskTree task_tree;
-  Offset panel_size = 0, update_size = 0, vector_size = 0;  // elements
+  Offset arena_size = 0, packed_size = 0, vector_size = 0;  // elements
   double flops = 0.0;                                       // of the padded fronts
 
   Offset bytes() const;
 };
 
-FactorLayout make_factor_layout(const SupernodeTree& tree, const AnalyzedGraph& analyzed, Index slab_rows, Index column_group);
+// `packed_size`: elements of a packed panel.
+FactorLayout make_factor_layout(const SupernodeTree& tree, const AnalyzedGraph& analyzed, Index slab_rows, Index column_group,
+                                Offset (*packed_size)(const FrontShape&));
 
-// Tasks and places of updates for a number of threads.
+// Tasks and places in the arena for a number of threads.
 void plan_tasks(FactorLayout& layout, int threads);
 
 }  // namespace taut

@@ -17,6 +17,14 @@
 // serve as both operands of every product as they are. The diagonal of L11 is stored inverted. Above the diagonal, a panel's slabs are 0
 // and an update's are undefined.
 //
+// The solves only read L11 and L21 once, from memory: they take the packed panel, which leaves out most of what the slabs are padded with
+// and lies in the order in which it is read. Group after group of column_group pivots (without those that are padding):
+//
+//   triangle   the group's columns, its own rows (column_group of them each)
+//   below      the rows after the group's, cut into pieces at the multiples of the vector length, columns one after the other inside a
+//   piece; the
+//              front's last rows padded to a multiple of 4
+//
 // R and column_group (the register block is R x column_group) differ by instruction set and precision: the layout is made for the kernels
 // that run. `columns` is a multiple of column_group; column_group divides R. No kernel allocates; all may be called from several threads on
 // different data.
@@ -27,6 +35,7 @@ namespace taut {
 
 struct FrontShape {
   std::int32_t columns = 0;  // pivots, padded to a multiple of column_group
+  std::int32_t padding = 0;  // the first of them, which are the identity
   std::int32_t rows = 0;     // with the pivots
   std::int32_t slab_rows = 0;
 
@@ -44,6 +53,11 @@ struct FrontShape {
   [[gnu::always_inline]] std::int64_t update_offset(std::int32_t slab) const {
     const std::int64_t r = slab_rows, first = first_update_slab(), b = slab;
     return r * (r * ((b * (b + 1) - first * (first + 1)) / 2) - (b - first) * columns);
+  }
+  // Of what the solves work on: whole SIMD registers, of half a slab's column each, and room for a few entries that are copied too many.
+  [[gnu::always_inline]] std::int64_t vector_size() const {
+    const std::int64_t unit = slab_rows / 2;
+    return (rows + 4 + unit - 1) / unit * unit;
   }
   [[gnu::always_inline]] std::int64_t panel_size() const { return panel_offset(slabs()); }
   [[gnu::always_inline]] std::int64_t update_size() const { return rows > columns ? update_offset(slabs()) : 0; }
@@ -85,9 +99,15 @@ struct FrontKernels {
   void (*add_update)(const FrontShape& child, const T* update, const RowPiece* pieces, std::int32_t column_begin, std::int32_t column_end,
                      std::int32_t row_begin, std::int32_t row_end, const FrontShape& parent, T* target, bool target_is_panel);
 
-  // x: slabs() * R entries. forward: x1 = L11⁻¹ x1, x2 -= L21 x1.  backward: x1 = L11⁻ᵀ (x1 - L21ᵀ x2); x beyond `rows` must be 0.
-  void (*forward)(const FrontShape& shape, const T* panel, T* x);
-  void (*backward)(const FrontShape& shape, const T* panel, T* x);
+  // Elements of a packed panel, a multiple of a cache line; its begin must lie on one.
+  std::int64_t (*packed_size)(const FrontShape& shape);
+  // Packs the columns begin ... end-1, whole groups.
+  void (*pack)(const FrontShape& shape, const T* panel, T* packed, std::int32_t begin, std::int32_t end);
+
+  // x: vector_size() entries; those beyond `rows` may be anything.
+  //   forward: x1 = L11⁻¹ x1, x2 -= L21 x1.  backward: x1 = L11⁻ᵀ (x1 - L21ᵀ x2)
+  void (*forward)(const FrontShape& shape, const T* packed, T* x);
+  void (*backward)(const FrontShape& shape, const T* packed, T* x);
 };
 
 }  // namespace taut

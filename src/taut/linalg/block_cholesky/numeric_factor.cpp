@@ -12,8 +12,8 @@ namespace taut {
 
 template <class T>
 NumericFactor<T>::NumericFactor(const SupernodeTree& tree, const AnalyzedGraph& graph, const FrontKernels<T>& kernels)
-    : kernels_(kernels), layout_(make_factor_layout(tree, graph, kernels_.slab_rows, kernels_.column_group)) {
-  panels_ = AlignedArray<T>(layout_.panel_size);
+    : kernels_(kernels), layout_(make_factor_layout(tree, graph, kernels_.slab_rows, kernels_.column_group, kernels_.packed_size)) {
+  packed_ = AlignedArray<T>(layout_.packed_size);
   vectors_[0] = AlignedArray<T>(layout_.vector_size);
   fate_.resize(layout_.front.size());
   bad_pivot_.resize(layout_.front.size());
@@ -28,7 +28,7 @@ void NumericFactor<T>::plan() {
   planned_threads_ = thread_count();
   plan_tasks(layout_, planned_threads_);
   // add_update reads up to slab_rows elements around an update.
-  updates_ = AlignedArray<T>(layout_.update_size + 2 * Offset{kernels_.slab_rows});
+  arena_ = AlignedArray<T>(layout_.arena_size + 2 * Offset{kernels_.slab_rows});
 }
 
 template <class T>
@@ -56,7 +56,8 @@ Status NumericFactor<T>::factorize(const FactorSource& source, std::span<const I
     for (Index s = task.begin; s < task.end; ++s) {
       eliminate(source, s, task.shared);
       if (fate_[s] != Fate::eliminated) continue;
-      for (std::size_t k = 0; k < loads.size(); ++k) forward(s, {start, loads[k].scale}, loads[k].b, static_cast<int>(loads.size() - 1 - k));
+      for (std::size_t k = 0; k < loads.size(); ++k)
+        forward(s, {start, loads[k].scale}, loads[k].b, static_cast<int>(loads.size() - 1 - k));
     }
   };
   run_upwards(layout_.task_tree, std::ref(run));
@@ -71,22 +72,40 @@ void NumericFactor<T>::eliminate(const FactorSource& source, Index s, bool share
       fate_[s] = Fate::skipped;
       return;
     }
-  T* panel = panels_.data() + front.panel;
+  T* panel = arena_.data() + kernels_.slab_rows + front.panel;
   std::fill(panel, panel + front.shape.panel_size(), T(0));
   assemble(source, front, panel);
   add_children(front, panel, true);
   bad_pivot_[s] = factor_panel(front, panel, shared);
   fate_[s] = bad_pivot_[s].column < 0 ? Fate::eliminated : Fate::bad_pivot;
-  const Index tiles = front.shape.update_tiles();
-  if (tiles == 0 || fate_[s] != Fate::eliminated) return;
+  if (fate_[s] != Fate::eliminated) return;
+  form_update(front, panel, shared);
+  pack(front, panel, shared);
+}
 
-  T* update = updates_.data() + kernels_.slab_rows + front.update;
+template <class T>
+void NumericFactor<T>::form_update(const Front& front, const T* panel, bool shared) {
+  const Index tiles = front.shape.update_tiles();
+  if (tiles == 0) return;
+  T* update = arena_.data() + kernels_.slab_rows + front.update;
   if (shared) {
     parallel_for(tiles, 4, [&](Index begin, Index end) { kernels_.form_update(front.shape, panel, update, begin, end); });
   } else {
     kernels_.form_update(front.shape, panel, update, 0, tiles);
   }
   add_children(front, update, false);
+}
+
+template <class T>
+void NumericFactor<T>::pack(const Front& front, const T* panel, bool shared) {
+  T* packed = packed_.data() + front.packed;
+  const Index group = kernels_.column_group;
+  const auto pack_groups = [&](Index begin, Index end) { kernels_.pack(front.shape, panel, packed, group * begin, group * end); };
+  if (shared) {
+    parallel_for(front.shape.columns / group, 8, pack_groups);
+  } else {
+    pack_groups(0, front.shape.columns / group);
+  }
 }
 
 namespace {
@@ -109,7 +128,7 @@ void NumericFactor<T>::assemble(const FactorSource& source, const Front& front, 
     assemble_node(source, front, k, panel);
     for (Index j = dim_[k]; j < layout_.node_weight[k]; ++j) set_one(layout_.node_column[k] + j);
   }
-  for (Index j = front.pivots; j < front.shape.columns; ++j) set_one(j);
+  for (Index j = 0; j < front.shape.padding; ++j) set_one(j);
 }
 
 namespace {
@@ -172,7 +191,7 @@ void NumericFactor<T>::add_children(const Front& front, T* target, bool target_i
   for (Index i = front.child_begin; i < front.child_end; ++i) {
     const Front& child = layout_.front[layout_.child[i]];
     const Index split = child.piece_split - child.piece_begin, end = child.piece_end - child.piece_begin;
-    kernels_.add_update(child.shape, updates_.data() + kernels_.slab_rows + child.update, layout_.piece.data() + child.piece_begin,
+    kernels_.add_update(child.shape, arena_.data() + kernels_.slab_rows + child.update, layout_.piece.data() + child.piece_begin,
                         target_is_panel ? 0 : split, target_is_panel ? split : end, target_is_panel ? 0 : split, end, front.shape, target,
                         target_is_panel);
   }

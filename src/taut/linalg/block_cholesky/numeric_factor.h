@@ -9,6 +9,7 @@
 //   3  eliminate the pivots
 //   4  update = -L21 L21ᵀ, written, not accumulated: so it is never zeroed ...
 //   5  ... and only then add the rest of the children's updates
+//   6  pack the panel
 //
 // The solves keep one short vector a front, rows() long: forward, a front adds its children's and hands on what its pivots subtract from
 // the rows below; backward, it reads the solution of those rows from its parent's. No two fronts that run at the same time write the same
@@ -65,8 +66,8 @@ class NumericFactor {
 
   const FactorLayout& layout() const { return layout_; }
   const char* instruction_set() const { return kernels_.instruction_set; }
-  Offset panel_bytes() const { return panels_.bytes(); }
-  Offset bytes() const { return panels_.bytes() + updates_.bytes() + vectors_[0].bytes() + vectors_[1].bytes() + layout_.bytes(); }
+  Offset panel_bytes() const { return packed_.bytes(); }
+  Offset bytes() const { return packed_.bytes() + arena_.bytes() + vectors_[0].bytes() + vectors_[1].bytes() + layout_.bytes(); }
 
  private:
   enum class Fate : std::uint8_t { eliminated, bad_pivot, skipped };
@@ -79,21 +80,25 @@ class NumericFactor {
   void assemble_node(const FactorSource& source, const Front& front, Index k, T* panel) const;
   void add_children(const Front& front, T* target, bool target_is_panel);
   BadPivot factor_panel(const Front& front, T* panel, bool shared) const;
+  void form_update(const Front& front, const T* panel, bool shared);
+  void pack(const Front& front, const T* panel, bool shared);
   Status verdict(const BlockCsr& a) const;
   // slot: of vectors_ and norm2_; 0 is the one that backward() takes.
   void forward(Index s, const FactorVectors& vectors, const double* b, int slot = 0);
   void backward(Index s, const FactorVectors& vectors, double beta, double* x);
+  void prefetch_lists(const Front* front, const FactorVectors& vectors) const;
+  void prefetch_data(const Front& front, const FactorVectors& vectors, const double* x) const;
 
   const FrontKernels<T>& kernels_;
   FactorLayout layout_;
   int planned_threads_ = 0;
-  AlignedArray<T> panels_, updates_;
+  AlignedArray<T> packed_, arena_;
   std::array<AlignedArray<T>, 2> vectors_;
-  std::vector<Fate> fate_;           // per front
-  std::vector<BadPivot> bad_pivot_;  // per front
+  std::vector<Fate> fate_;                    // per front
+  std::vector<BadPivot> bad_pivot_;           // per front
   std::array<std::vector<double>, 2> norm2_;  // per front: of its part of y
-  std::vector<Index> dim_;           // per place in the order: unknowns of the node in the factorised matrix
-  std::vector<Index> basis_of_;      // per place: its Q_i in basis_, or -1: the identity
+  std::vector<Index> dim_;                    // per place in the order: unknowns of the node in the factorised matrix
+  std::vector<Index> basis_of_;               // per place: its Q_i in basis_, or -1: the identity
   std::vector<Mat3> basis_;
 };
 

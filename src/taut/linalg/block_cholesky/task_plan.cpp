@@ -1,4 +1,4 @@
-// Tasks, and the places of updates in the arena.
+// Tasks, and places in the arena.
 
 #include <algorithm>
 
@@ -28,9 +28,9 @@ std::vector<double> subtree_work(const FactorLayout& layout) {
   return work;
 }
 
-// Places updates from `base` on so that a front's own does not overlap its children's. Where children may run at the same time, their whole
-// subtrees are kept apart, with a slab between them, because add_update reads (and leaves) as much beyond an update; else only their updates
-// are.
+// Places updates so that a front's own does not overlap its children's, and panels so that they overlap neither. Where children may run at
+// the same time, their whole subtrees are kept apart, with a slab between them, because add_update reads (and leaves) as much beyond an
+// update; else only their updates are.
 class ArenaPlan {
  public:
   ArenaPlan(FactorLayout& layout, std::span<const std::uint8_t> is_shared)
@@ -52,6 +52,7 @@ class ArenaPlan {
         begin[s] += begin[p];
       }
       layout_.front[s].update += begin[s];
+      layout_.front[s].panel += begin[s];
     }
     return roots_end;
   }
@@ -71,7 +72,9 @@ class ArenaPlan {
       next = is_shared_[s] ? next + peak_[c] + f.shape.slab_rows : std::max(next, update_end);
     }
     f.update = first_gap(f.shape.update_size());
-    peak_[s] = std::max(peak, f.update + f.shape.update_size());
+    const Offset updates_end = std::max(f.update + f.shape.update_size(), live_.empty() ? 0 : live_.back().second);
+    f.panel = updates_end + f.shape.slab_rows;
+    peak_[s] = std::max(peak, f.panel + f.shape.panel_size());
   }
 
   Offset first_gap(Offset size) {
@@ -127,7 +130,7 @@ void plan_tasks(FactorLayout& layout, int threads) {
     task_parent.push_back(p < 0 ? -1 : task_of[p]);
   }
   layout.task_tree = TaskTree(std::move(task_parent));
-  layout.update_size = ArenaPlan(layout, is_shared).plan();
+  layout.arena_size = ArenaPlan(layout, is_shared).plan();
 }
 
 }  // namespace taut

@@ -3,29 +3,52 @@
 #include <algorithm>
 #include <functional>
 
-#include "taut/base/parallel.h"
+#include "taut/base/simd.h"
 #include "taut/linalg/block_cholesky/numeric_factor.h"
 
 namespace taut {
 
 namespace {
 
-// Asks for the begin of a front's panel while the front before it is worked on: most fronts are smaller than a stream that the processor
-// would recognise.
-template <class T>
-void prefetch_panel(const FrontShape& shape, const T* panel) {
-  constexpr Offset line = 64 / sizeof(T), most = 16384 / sizeof(T);
-  const Offset size = std::min(shape.panel_size(), most);
-  for (Offset k = 0; k < size; k += line) __builtin_prefetch(panel + k, 0, 2);
+// Fronts are so small that the processor cannot look far enough ahead by itself: what the solve of a front reads beside its panel is asked
+// for while the fronts before it are worked on, index lists first, then what they lead to.
+constexpr Index lists_ahead = 6, data_ahead = 2;
+
+template <class Value>
+void prefetch_range(const Value* begin, const Value* end) {
+  for (const char* p = reinterpret_cast<const char*>(begin); p < reinterpret_cast<const char*>(end); p += 64) __builtin_prefetch(p);
+}
+
+template <class List>
+void prefetch_elements(const List& list, Index begin, Index end) {
+  prefetch_range(list.data() + begin, list.data() + end);
 }
 
 }  // namespace
 
 template <class T>
+void NumericFactor<T>::prefetch_lists(const Front* front, const FactorVectors& vectors) const {
+  __builtin_prefetch(front + (lists_ahead));
+  prefetch_elements(layout_.node_column, front->first_node, front->last_node);
+  prefetch_elements(dim_, front->first_node, front->last_node);
+  prefetch_elements(basis_of_, front->first_node, front->last_node);
+  prefetch_elements(vectors.start, front->first_node, front->last_node);
+}
+
+template <class T>
+void NumericFactor<T>::prefetch_data(const Front& front, const FactorVectors& vectors, const double* x) const {
+  const T* y = vectors_[0].data() + front.vector;
+  prefetch_range(y, y + front.shape.rows);
+  for (Index k = front.first_node; k < front.last_node; ++k) __builtin_prefetch(x + vectors.start[k]);
+}
+
+template <class T>
 void NumericFactor<T>::solve_forward(const FactorVectors& vectors, const double* b) {
   const auto up = [&](Index t) {
-    for (Index s = layout_.task[t].begin; s < layout_.task[t].end; ++s) {
-      if (s + 1 < layout_.task[t].end) prefetch_panel(layout_.front[s + 1].shape, panels_.data() + layout_.front[s + 1].panel);
+    const Index end = layout_.task[t].end;
+    for (Index s = layout_.task[t].begin; s < end; ++s) {
+      if (s + lists_ahead < end) prefetch_lists(&layout_.front[s + lists_ahead], vectors);
+      if (s + data_ahead < end) prefetch_data(layout_.front[s + data_ahead], vectors, b);
       forward(s, vectors, b);
     }
   };
@@ -35,13 +58,71 @@ void NumericFactor<T>::solve_forward(const FactorVectors& vectors, const double*
 template <class T>
 void NumericFactor<T>::solve_backward(const FactorVectors& vectors, double beta, double* x) {
   const auto down = [&](Index t) {
-    for (Index s = layout_.task[t].end - 1; s >= layout_.task[t].begin; --s) {
-      if (s > layout_.task[t].begin) prefetch_panel(layout_.front[s - 1].shape, panels_.data() + layout_.front[s - 1].panel);
+    const Index begin = layout_.task[t].begin;
+    for (Index s = layout_.task[t].end - 1; s >= begin; --s) {
+      if (s - lists_ahead >= begin) {
+        const Front& front = layout_.front[s - lists_ahead];
+        prefetch_elements(layout_.piece, front.piece_begin, front.piece_end);
+        prefetch_lists(&front, vectors);
+      }
+      if (s - data_ahead >= begin) prefetch_data(layout_.front[s - data_ahead], vectors, x);
       backward(s, vectors, beta, x);
     }
   };
   run_downwards(layout_.task_tree, std::ref(down));
 }
+
+namespace {
+
+// Four numbers at any address.
+template <class T>
+struct Quad;
+template <>
+struct Quad<float> {
+  using Type = float __attribute__((vector_size(16), aligned(4), may_alias));
+};
+template <>
+struct Quad<double> {
+  using Type = double __attribute__((vector_size(32), aligned(8), may_alias));
+};
+template <class T>
+TAUT_ALWAYS_INLINE typename Quad<T>::Type& quad(T* p) {
+  return *reinterpret_cast<typename Quad<T>::Type*>(p);
+}
+template <class T>
+TAUT_ALWAYS_INLINE const typename Quad<T>::Type& quad(const T* p) {
+  return *reinterpret_cast<const typename Quad<T>::Type*>(p);
+}
+
+// A handful of numbers: too few to be worth a call. Reads and writes up to three more.
+template <class T>
+TAUT_ALWAYS_INLINE void copy_few(const T* from, Index count, T* to) {
+  for (Index r = 0; r < count; r += 4) quad(to + r) = quad(from + r);
+}
+
+template <class T>
+TAUT_ALWAYS_INLINE void add_few(const T* from, Index count, T* to) {
+  Index r = 0;
+  for (; r + 4 <= count; r += 4) quad(to + r) += quad(from + r);
+  if (r < count) to[r] += from[r];
+  if (r + 1 < count) to[r + 1] += from[r + 1];
+  if (r + 2 < count) to[r + 2] += from[r + 2];
+}
+
+// x may be anything where beta is 0.
+TAUT_ALWAYS_INLINE double sum_with(double value, double beta, double x) { return beta == 0.0 ? value : value + beta * x; }
+
+template <class T>
+double norm2_of_entries(const T* begin, const T* end) {
+  double sum[4] = {};
+  const T* p = begin;
+  for (; p + 4 <= end; p += 4)
+    for (int i = 0; i < 4; ++i) sum[i] += static_cast<double>(p[i]) * static_cast<double>(p[i]);
+  for (; p < end; ++p) sum[0] += static_cast<double>(*p) * static_cast<double>(*p);
+  return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+}
+
+}  // namespace
 
 template <class T>
 double NumericFactor<T>::norm2_of(const std::vector<double>& parts) {
@@ -55,15 +136,17 @@ void NumericFactor<T>::forward(Index s, const FactorVectors& vectors, const doub
   const Front& front = layout_.front[s];
   T* const all = vectors_[slot].data();
   T* y = all + front.vector;
-  std::fill(y, y + Offset{front.shape.slabs()} * front.shape.slab_rows, T(0));
+  std::fill(y, y + front.shape.rows, T(0));
   for (Index k = front.first_node; k < front.last_node; ++k) {
     const double* from = b + vectors.start[k];
     T* to = y + layout_.node_column[k];
-    if (basis_of_[k] < 0) {
-      for (Index r = 0; r < dim_[k]; ++r) to[r] = static_cast<T>(vectors.scale * from[r]);
-    } else {
+    if (basis_of_[k] >= 0) {
       const Mat3& q = basis_[basis_of_[k]];
       for (Index r = 0; r < dim_[k]; ++r) to[r] = static_cast<T>(vectors.scale * q.col(r).dot(Eigen::Map<const Vec3>(from)));
+    } else if (dim_[k] == 3) {
+      for (Index r = 0; r < 3; ++r) to[r] = static_cast<T>(vectors.scale * from[r]);
+    } else {
+      for (Index r = 0; r < dim_[k]; ++r) to[r] = static_cast<T>(vectors.scale * from[r]);
     }
   }
   for (Index i = front.child_begin; i < front.child_end; ++i) {
@@ -71,13 +154,11 @@ void NumericFactor<T>::forward(Index s, const FactorVectors& vectors, const doub
     const T* from = all + child.vector;
     for (Index q = child.piece_begin; q < child.piece_end; ++q) {
       const RowPiece& piece = layout_.piece[q];
-      for (Index r = 0; r < piece.count; ++r) y[piece.to + r] += from[piece.from + r];
+      add_few(from + piece.from, piece.count, y + piece.to);
     }
   }
-  kernels_.forward(front.shape, panels_.data() + front.panel, y);
-  double sum = 0.0;
-  for (Index i = 0; i < front.pivots; ++i) sum += static_cast<double>(y[i]) * static_cast<double>(y[i]);
-  norm2_[slot][s] = sum;
+  kernels_.forward(front.shape, packed_.data() + front.packed, y);
+  norm2_[slot][s] = norm2_of_entries(y + front.shape.padding, y + front.shape.columns);
 }
 
 template <class T>
@@ -88,23 +169,22 @@ void NumericFactor<T>::backward(Index s, const FactorVectors& vectors, double be
     const T* from = vectors_[0].data() + layout_.front[front.parent].vector;
     for (Index q = front.piece_begin; q < front.piece_end; ++q) {
       const RowPiece& piece = layout_.piece[q];
-      std::copy(from + piece.to, from + piece.to + piece.count, y + piece.from);
+      copy_few(from + piece.to, piece.count, y + piece.from);  // what is too much is written over by the next
     }
   }
-  kernels_.backward(front.shape, panels_.data() + front.panel, y);
+  kernels_.backward(front.shape, packed_.data() + front.packed, y);
   const double scale = 1.0 / vectors.scale;
   for (Index k = front.first_node; k < front.last_node; ++k) {
     const T* from = y + layout_.node_column[k];
     double* to = x + vectors.start[k];
-    Index count = dim_[k];
-    Vec3 expanded = Vec3::Zero();
     if (basis_of_[k] >= 0) {
+      Vec3 expanded = Vec3::Zero();
       for (Index r = 0; r < dim_[k]; ++r) expanded += static_cast<double>(from[r]) * basis_[basis_of_[k]].col(r);
-      count = 3;
-    }
-    for (Index r = 0; r < count; ++r) {
-      const double value = scale * (basis_of_[k] >= 0 ? expanded[r] : static_cast<double>(from[r]));
-      to[r] = beta == 0.0 ? value : value + beta * to[r];
+      for (Index r = 0; r < 3; ++r) to[r] = sum_with(scale * expanded[r], beta, to[r]);
+    } else if (dim_[k] == 3) {
+      for (Index r = 0; r < 3; ++r) to[r] = sum_with(scale * static_cast<double>(from[r]), beta, to[r]);
+    } else {
+      for (Index r = 0; r < dim_[k]; ++r) to[r] = sum_with(scale * static_cast<double>(from[r]), beta, to[r]);
     }
   }
 }
