@@ -2,7 +2,7 @@
 // Takes back the angular momentum that impulses between cloths have added.
 //
 //   L = sum m x1 × v                  kg m²/s
-//   y = x1 - h v                      m, of what was solved: x0, but where a step was solved in parts
+//   y = x1 - h v                      m, of what was solved: x0, but of integrators whose v is not (x1 - x0)/h
 //   Δ                                 m: what the response adds to x1, and Δ/h to v. It leaves L as it is when sum m y × Δ = 0, since
 //                                     (x1 + Δ) × (v + Δ/h) = x1 × v + y × Δ/h
 //   r = sum_k weight_k y_k            m, a row's points apart (contact_row.h)

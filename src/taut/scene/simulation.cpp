@@ -93,49 +93,37 @@ Status Simulation::step(StepRecord& record) {
 }
 
 Status Simulation::advance(double h, int halvings, StepRecord& record) {
-  const Moment before{state_, contact_.state()};
-  const int retries = record.retries;
-  Status status = move(h, halvings, record);
-  if (status.ok()) status = keep_apart(before.state, h, record.retries > retries, record);
-  if (status.ok()) return status;
-  go_back(before);
-  if (halvings == scene_.time.max_halvings) return status;
-  const ZoneState zones = surface_contact_ ? surface_contact_->state() : ZoneState{};
-  status = in_halves(h, halvings, record, &Simulation::advance);
-  if (status.ok()) return status;
-  go_back(before);
-  if (surface_contact_) surface_contact_->restore(zones);
-  return status;
-}
-
-Status Simulation::move(double h, int halvings, StepRecord& record) {
   const bool may_halve = halvings < scene_.time.max_halvings;
   double beyond = 0.0;
-  const Status status = try_step(h, may_halve, beyond, record);
+  Status status = try_step(h, may_halve, beyond, record);
   if (status.ok() && halvings == 0 && on_solved) on_solved(*this, last_summary_);
   const bool overshot = status.ok() && beyond > scene_.time.overshoot_limit;
-  if (overshot && may_halve) return in_halves(h, halvings, record, &Simulation::move);
+  if (may_halve && (!status.ok() || overshot)) return advance_halves(h, halvings, record);
   // Without halving, as in the paper, it is the user's choice to accept what comes.
   if (overshot && scene_.time.max_halvings > 0) record.overshoot = std::max(record.overshoot, beyond);
-  if (status.ok()) accept(record);
-  return status;
+  if (status.ok()) status = accept(h, record);
+  return status.ok() || !may_halve ? status : advance_halves(h, halvings, record);
 }
 
-Status Simulation::in_halves(double h, int halvings, StepRecord& record, Status (Simulation::*go)(double, int, StepRecord&)) {
+Status Simulation::advance_halves(double h, int halvings, StepRecord& record) {
   ++record.retries;
+  const State state = state_;
+  const ContactState contacts = contact_.state();
+  const ZoneState zones = surface_contact_ ? surface_contact_->state() : ZoneState{};
   Status status;
   for (int half = 0; half < 2 && status.ok(); ++half) {
     stepper_.start_afresh(state_);
-    status = (this->*go)(h / 2, halvings + 1, record);
+    status = advance(h / 2, halvings + 1, record);
   }
-  if (status.ok()) stepper_.start_afresh(state_);
-  if (!status.ok() && halvings + 1 == scene_.time.max_halvings) status.message += fmt::format(" (also with steps of {:.3g} s)", h / 2);
+  if (status.ok()) {
+    stepper_.start_afresh(state_);
+  } else {
+    state_ = state;
+    contact_.restore(contacts);
+    if (surface_contact_) surface_contact_->restore(zones);
+    if (halvings + 1 == scene_.time.max_halvings) status.message += fmt::format(" (also with steps of {:.3g} s)", h / 2);
+  }
   return status;
-}
-
-void Simulation::go_back(const Moment& before) {
-  state_ = before.state;
-  contact_.restore(before.contacts);
 }
 
 double Simulation::largest_overshoot() const {
@@ -161,43 +149,32 @@ Status Simulation::try_step(double h, bool may_halve, double& overshoot, StepRec
   return solve_passes(may_halve, overshoot, record);
 }
 
-void Simulation::accept(StepRecord& record) {
+Status Simulation::correct(double h, std::vector<Vec3>& corrected, bool& changed, StepRecord& record) {
+  changed = contact_.move_out(corrected) > 0;
+  if (!surface_contact_) return {};
+  std::vector<Vec3> v_end(stepper_.v_end().begin(), stepper_.v_end().end());
+  if (changed)
+    for (std::size_t i = 0; i < v_end.size(); ++i) v_end[i] += (corrected[i] - stepper_.x_end()[i]) / h;
+  Status status = surface_contact_->correct(state_.time, h, state_.x, v_end, pins_, contact_, corrected, changed);
+  note_surface_contact(record);
+  return status;
+}
+
+Status Simulation::accept(double h, StepRecord& record) {
   Timer contact_timer;
   std::vector<Vec3> corrected(stepper_.x_end().begin(), stepper_.x_end().end());
-  const bool moved = contact_.move_out(corrected) > 0;
-  contact_.keep();
+  bool changed = false;
+  const Status status = correct(h, corrected, changed, record);
   record.contact_ms += contact_timer.milliseconds();
-  note_moved_out(record);
-  record.contacts = contact_.contacts();
-  stepper_.commit(state_);
-  if (moved) stepper_.correct(state_, corrected, stepper_.h());
-}
-
-void Simulation::note_moved_out(StepRecord& record) const {
+  if (!status.ok()) return status;
+  contact_.keep();
+  if (surface_contact_) surface_contact_->keep();
   record.contact_moved += contact_.counts().moved;
   record.deepest_m = std::max(record.deepest_m, contact_.deepest());
-}
-
-Status Simulation::keep_apart(const State& start, double h, bool in_parts, StepRecord& record) {
-  if (!surface_contact_) return {};
-  Timer contact_timer;
-  std::vector<Vec3> corrected = state_.x;
-  if (in_parts) {
-    // The solids' planes of the last part are not those of the whole.
-    contact_.begin_step(start.time, h, start.x, state_.x, held_);
-    if (contact_.move_out(corrected) > 0) stepper_.correct(state_, corrected, h);
-    note_moved_out(record);
-  }
-  bool changed = false;
-  const Status status = surface_contact_->correct(start.time, h, start.x, state_.v, pins_, contact_, corrected, changed);
-  note_surface_contact(record);
-  if (status.ok()) {
-    surface_contact_->keep();
-    record.contacts += surface_contact_->counts().pushing;
-    if (changed) stepper_.correct(state_, corrected, h);
-  }
-  record.contact_ms += contact_timer.milliseconds();
-  return status;
+  record.contacts = contact_.contacts() + (surface_contact_ ? surface_contact_->counts().pushing : 0);
+  stepper_.commit(state_);
+  if (changed) stepper_.correct(state_, corrected, h);
+  return {};
 }
 
 void Simulation::note_surface_contact(StepRecord& record) const {

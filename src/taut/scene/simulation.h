@@ -1,13 +1,12 @@
 #pragma once
 // A scene in motion: the loop that joins contact and the step.
 //
-//   step():  pins, zones and contact with solids give constraints -> assemble -> [solve -> contact judges the constraint forces] until the
-//   contacts agree -> commit -> cloth is kept from passing through cloth (scene/surface_contact.h)
+//   step():  pins, zones and contact give constraints -> assemble -> [solve -> contact judges the constraint forces] until the contacts
+//   agree -> cloth is kept from passing through cloth (scene/surface_contact.h) -> commit
 //
-// A solve that fails is repeated by a direct method (counted in `fallbacks`, named in the record). A step in which a stretch spring
-// overshoots by more than TimeOptions::overshoot_limit (force/overshoot.h) is solved again as two of half the length, and each of them
-// likewise, down to h / 2^max_halvings (counted in `retries`); cloth is kept apart once, from the start of the whole step to its end: the
-// parts in between may pass through each other. If that, or a solve, fails, all of the step is redone as two of half the length. What
+// A solve that fails is repeated by a direct method (counted in `fallbacks`, named in the record). If that fails too, or a stretch spring
+// overshoots by more than TimeOptions::overshoot_limit (force/overshoot.h), the step is redone as two of half the length, and each of them
+// likewise, down to h / 2^max_halvings (counted in `retries`). So it is if cloth cannot be kept from passing through itself. What
 // overshoots there is accepted (StepRecord::overshoot says so); what cannot be solved or kept apart there makes step() return a bad status
 // with the step and time in its message, and the state stays that of the step before.
 
@@ -93,20 +92,11 @@ class Simulation {
   std::function<void(Simulation&, const SolveSummary&)> on_solved;
 
  private:
-  // What a part of a step begins with.
-  struct Moment {
-    State state;
-    ContactState contacts;
-  };
-
   Status advance(double h, int halvings, StepRecord& record);
-  Status move(double h, int halvings, StepRecord& record);
-  Status in_halves(double h, int halvings, StepRecord& record, Status (Simulation::*go)(double, int, StepRecord&));
-  void go_back(const Moment& before);
+  Status advance_halves(double h, int halvings, StepRecord& record);
   Status try_step(double h, bool may_halve, double& overshoot, StepRecord& record);
-  void accept(StepRecord& record);
-  Status keep_apart(const State& start, double h, bool in_parts, StepRecord& record);
-  void note_moved_out(StepRecord& record) const;
+  Status correct(double h, std::vector<Vec3>& corrected, bool& changed, StepRecord& record);
+  Status accept(double h, StepRecord& record);
   void note_surface_contact(StepRecord& record) const;
   void look_for_intersections(StepRecord& record);
   double largest_overshoot() const;

@@ -30,7 +30,7 @@ class SurfaceContact {
 
   void hold_zones(const State& state, double h, ConstraintSet& constraints) const;
 
-  // The step [t, t + h] from x0 to x_end with v_end, however it was solved. pins: what holds nodes whatever happens. x_end is changed; true
+  // The step [t, t + h] from x0 to x_end with v_end. pins: what holds nodes whatever happens. x_end is changed; true
   // in `changed` if any node was moved, for which v_end must then change by as much over h.
   Status correct(double t, double h, std::span<const Vec3> x0, std::span<const Vec3> v_end, const ConstraintSet& pins,
                  const SolidContact& solids, std::span<Vec3> x_end, bool& changed);

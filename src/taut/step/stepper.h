@@ -40,8 +40,8 @@ class Stepper {
 
   // Ends the step: state becomes (x_end, v_end) at time + h.
   void commit(State& state);
-  // After that: `corrected` positions replace the state's, the velocity is changed by what they moved over h (s; of a step in parts, of the
-  // whole), and a multistep method starts afresh.
+  // After that: `corrected` positions replace the state's, the velocity is changed by what they moved over h (s), and a multistep
+  // method starts afresh.
   void correct(State& state, std::span<const Vec3> corrected, double h) const;
   double h() const { return h_; }
   // The next step is of another size than the last: a multistep method must not use the step before.
