@@ -55,7 +55,7 @@ TEST(AutoScene, SolvesEveryRegime) {
           ASSERT_TRUE(status.ok()) << status.message;
           EXPECT_LT(error, 10.0 * tolerance) << record.solver << ", step " << step;
           EXPECT_LT(record.relative_residual, 100.0 * tolerance) << record.solver << ", step " << step;
-          if (record.solver.starts_with("core")) {
+          if (record.solver.starts_with("core") && (record.contact_passes == 1 || record.bound_iterations >= 0)) {
             EXPECT_LE(record.iterations, record.bound_iterations);
             if (h > 1e-3 || k_stretch > 60.0) {
               EXPECT_GT(record.core_springs, 0);

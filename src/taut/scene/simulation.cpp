@@ -248,7 +248,10 @@ void Simulation::note_solve(const SolveSummary& summary, StepRecord& record) con
   record.factor_ms += summary.factor_ms;
   record.solve_ms += summary.solve_ms + summary.reduce_ms;
   if (summary.method.starts_with("core_")) record.core_springs = stepper_.core_springs(summary.core);
-  record.bound_iterations = std::max(record.bound_iterations, summary.bound_iterations);
+  // `auto` may change its method between passes: iterations of one without a bound are not to be held against another's.
+  const int bound = summary.bound_iterations;
+  const bool bounded = bound >= 0 && (record.contact_passes == 0 || record.bound_iterations >= 0);
+  record.bound_iterations = bounded ? std::max(record.bound_iterations, bound) : -1;
 }
 
 void Simulation::note_state(StepRecord& record) const {

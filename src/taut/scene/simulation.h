@@ -32,7 +32,7 @@ struct StepRecord {
   double assemble_ms = 0.0, order_ms = 0.0, factor_ms = 0.0, solve_ms = 0.0, contact_ms = 0.0, step_ms = 0.0;
   double kinetic_J = 0.0, elastic_J = 0.0;
   double max_stretch = 0.0;   // largest L/L0 - 1 of all stretch springs
-  int bound_iterations = -1;  // -1: the solver has no bound
+  int bound_iterations = -1;  // -1: the solver, of several passes one of them, has no bound
   int fallbacks = 0;
   std::string precision = "double";  // of the factor; of several passes the higher one
   Index collapsed_springs = 0;
