@@ -213,7 +213,10 @@ AutoSolver::Attempt AutoSolver::attempt(Method method, int most_iterations, Solv
     solve.first = false;
   }
   add_attempt(std::move(s), solve.summary);
-  if (solved) return Attempt::solved;
+  if (solved) {
+    last_solved_ = method;
+    return Attempt::solved;
+  }
   if (outcome == Outcome::converged || outcome == Outcome::max_iterations) return Attempt::given_up;
   ++solve.summary.fallbacks;
   return Attempt::failed;

@@ -52,6 +52,7 @@ class AutoSolver : public ConstrainedSolver {
 
  protected:
   void run(const LinearSystem& system, std::span<double> x, SolveSummary& summary) override;
+  bool is_direct() const override { return last_solved_ == direct; }
 
  private:
   enum Method : int { core, stretch_core, full_core, block_diagonal, ic0_core, ic0, direct, method_count };
@@ -90,6 +91,7 @@ class AutoSolver : public ConstrainedSolver {
   std::span<const std::uint8_t> all_blocks(const BlockCsr& a);
 
   std::array<Record, method_count> records_;
+  Method last_solved_ = core;  // what solved the last system that was solved
   double solves_ = 0.0;
   std::array<std::unique_ptr<ConstrainedSolver>, method_count> solvers_;
   std::vector<double> guess_;

@@ -25,7 +25,7 @@
 //   piece; the
 //              front's last rows padded to a multiple of 4
 //
-// R and column_group (the register block is R x column_group) differ by instruction set and precision: the layout is made for the kernels
+// R and column_group (the register block of the elimination is R x column_group) differ by instruction set and precision: the layout is made for the kernels
 // that run. `columns` is a multiple of column_group; column_group divides R. No kernel allocates; all may be called from several threads on
 // different data.
 
@@ -54,10 +54,10 @@ struct FrontShape {
     const std::int64_t r = slab_rows, first = first_update_slab(), b = slab;
     return r * (r * ((b * (b + 1) - first * (first + 1)) / 2) - (b - first) * columns);
   }
-  // Of what the solves work on: whole SIMD registers, of half a slab's column each, and room for a few entries that are copied too many.
+  // Of what the solves work on: whole SIMD registers, of at most a slab's column each, and room for a few entries that are copied too many.
   [[gnu::always_inline]] std::int64_t vector_size() const {
-    const std::int64_t unit = slab_rows / 2;
-    return (rows + 4 + unit - 1) / unit * unit;
+    const std::int64_t r = slab_rows;
+    return (rows + 4 + r - 1) / r * r;
   }
   [[gnu::always_inline]] std::int64_t panel_size() const { return panel_offset(slabs()); }
   [[gnu::always_inline]] std::int64_t update_size() const { return rows > columns ? update_offset(slabs()) : 0; }

@@ -10,13 +10,18 @@ namespace {
 
 using Int = std::int32_t;
 
-// The registers of one block: R/lanes x G accumulators, R/lanes for a column of the first operand, one for the broadcast second operand.
+// The registers of one block: R/lanes x G accumulators, R/lanes for a column of the first operand, one for the broadcast second operand. A
+// block of the update may be `wide` columns wide. Eight accumulators hide the latency of two multiply-adds a cycle; larger blocks would
+// only pad fronts more, most of which are small.
 #if defined(__AVX512F__)
-constexpr Int register_bytes = 64, block_vectors = 2, group = 8;  // 16 of 32 registers
-#elif defined(__AVX2__)
-constexpr Int register_bytes = 32, block_vectors = 2, group = 4;  // 8 of 16
+constexpr Int register_bytes = 64, block_vectors = 1, group = 4, wide = 8;
 #else
-constexpr Int register_bytes = 16, block_vectors = 2, group = 4;  // 8 of 16
+constexpr Int block_vectors = 2, group = 4, wide = 4;
+#if defined(__AVX2__)
+constexpr Int register_bytes = 32;
+#else
+constexpr Int register_bytes = 16;
+#endif
 #endif
 
 typedef float FloatVector __attribute__((vector_size(register_bytes)));
@@ -76,28 +81,28 @@ TAUT_INLINE Vector<T> masked(Vector<T> v, Mask<T> mask) {
   return (Vector<T>)((Mask<T>)v & mask);
 }
 
-// A register block: `group` columns of the vectors from `First` to the slab's end.
-template <class T, Int First>
+// A register block: `Columns` columns of the vectors from `First` to the slab's end.
+template <class T, Int First, Int Columns = group>
 struct Block {
   static constexpr Int vectors = block_vectors - First;
-  Vector<T> v[group][vectors];
+  Vector<T> v[Columns][vectors];
 
   TAUT_INLINE void load_from(const T* column) {
-    for (Int j = 0; j < group; ++j)
+    for (Int j = 0; j < Columns; ++j)
       for (Int i = 0; i < vectors; ++i) v[j][i] = load(column + j * slab_rows<T> + (First + i) * lanes<T>);
   }
   TAUT_INLINE void store_to(T* column) const {
-    for (Int j = 0; j < group; ++j)
+    for (Int j = 0; j < Columns; ++j)
       for (Int i = 0; i < vectors; ++i) store(column + j * slab_rows<T> + (First + i) * lanes<T>, v[j][i]);
   }
   TAUT_INLINE void clear() {
-    for (Int j = 0; j < group; ++j)
+    for (Int j = 0; j < Columns; ++j)
       for (Int i = 0; i < vectors; ++i) v[j][i] = Vector<T>{};
   }
   // Rows of the slab above `row`, which lies in the first vector, become 0.
   TAUT_INLINE void clear_above(Int row) {
     const Mask<T> keep = lane_numbers<T>() >= row - First * lanes<T>;
-    for (Int j = 0; j < group; ++j) v[j][0] = masked<T>(v[j][0], keep);
+    for (Int j = 0; j < Columns; ++j) v[j][0] = masked<T>(v[j][0], keep);
   }
   // v -= A Bᵀ over k columns: a is a slab, b points at the group's first row in another one.
   TAUT_INLINE void subtract_product(const T* a, const T* b, Int count) {
@@ -106,21 +111,21 @@ struct Block {
       Vector<T> column[vectors];
       for (Int i = 0; i < vectors; ++i) column[i] = load(a + i * lanes<T>);
 #pragma GCC unroll 8
-      for (Int j = 0; j < group; ++j) {
+      for (Int j = 0; j < Columns; ++j) {
         const T factor = b[j];
 #pragma GCC unroll 4
         for (Int i = 0; i < vectors; ++i) v[j][i] -= column[i] * factor;
       }
     }
   }
-  // v = v L⁻ᵀ with the group's triangle of L (diagonal inverted), whose first row and column are at `triangle`.
+  // v = v L⁻ᵀ with the block's triangle of L (diagonal inverted), whose first row and column are at `triangle`.
   TAUT_INLINE void solve_triangle(const T* triangle) {
 #pragma GCC unroll 8
-    for (Int j = 0; j < group; ++j) {
+    for (Int j = 0; j < Columns; ++j) {
 #pragma GCC unroll 4
       for (Int i = 0; i < vectors; ++i) v[j][i] *= triangle[j * slab_rows<T> + j];
 #pragma GCC unroll 8
-      for (Int l = j + 1; l < group; ++l)
+      for (Int l = j + 1; l < Columns; ++l)
 #pragma GCC unroll 4
         for (Int i = 0; i < vectors; ++i) v[l][i] -= v[j][i] * triangle[j * slab_rows<T> + l];
     }
@@ -154,11 +159,10 @@ TAUT_INLINE Int factor_triangle(T* triangle, double& bad_value) {
 // Calls f.template operator()<First>() with the first vector that holds row `row` of a slab.
 template <class T, class Function>
 TAUT_INLINE void from_row(Int row, Function f) {
-  const Int first = row / lanes<T>;
-  if constexpr (block_vectors > 2) {
-    if (first >= 2) return f.template operator()<2>();
+  if constexpr (block_vectors > 1) {
+    if (row >= lanes<T>) return f.template operator()<1>();
   }
-  first == 0 ? f.template operator()<0>() : f.template operator()<1>();
+  f.template operator()<0>();
 }
 
 // The part of a panel that eliminate() works on.
@@ -253,15 +257,18 @@ void form_tile(const FrontShape& shape, const T* panel, T* update, Int row_slab,
   const Int first = r * column_slab > shape.columns ? r * column_slab : shape.columns, last = r * (column_slab + 1);
   for (Int k = 0; k < shape.columns || k == 0; k += panel_columns<T>) {
     const Int count = shape.columns - k < panel_columns<T> ? shape.columns - k : panel_columns<T>;
-    for (Int c = first; c < last; c += group) {
+    const auto form_columns = [&]<Int Columns>(Int c) __attribute__((always_inline)) {
       from_row<T>(row_slab == column_slab ? c % r : 0, [&]<Int First>() {
-        Block<T, First> block;
+        Block<T, First, Columns> block;
         T* column = out + (c - shape.columns) * r;
         k == 0 ? block.clear() : block.load_from(column);
         block.subtract_product(rows + k * r, others + k * r + c % r, count);
         block.store_to(column);
       });
-    }
+    };
+    Int c = first;
+    for (; c % wide != 0; c += group) form_columns.template operator()<group>(c);
+    for (; c < last; c += wide) form_columns.template operator()<wide>(c);
   }
 }
 

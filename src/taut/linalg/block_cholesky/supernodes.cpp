@@ -4,6 +4,7 @@
 
 #include "taut/linalg/block_cholesky/amalgamation.h"
 #include "taut/linalg/block_cholesky/elimination_tree.h"
+#include "taut/linalg/block_cholesky/pivot_order.h"
 
 namespace taut {
 
@@ -46,6 +47,16 @@ void find_rows(const NodeGraph& graph, SupernodeTree& tree) {
   }
 }
 
+void move_pivots(std::span<const Index> place, SupernodeTree& tree) {
+  const std::vector<Index> order = tree.order;
+  for (std::size_t k = 0; k < order.size(); ++k) tree.order[place[k]] = order[k];
+  for (Index s = 0; s < tree.supernodes(); ++s) {
+    const std::span<Index> rows{tree.row.data() + tree.row_start[s], tree.row.data() + tree.row_start[s + 1]};
+    for (Index& k : rows) k = place[k];
+    std::ranges::sort(rows);
+  }
+}
+
 }  // namespace
 
 SupernodeTree make_supernode_tree(const NodeGraph& graph, std::vector<Index> order, std::span<const Index> weight) {
@@ -63,6 +74,7 @@ SupernodeTree make_supernode_tree(const NodeGraph& graph, std::vector<Index> ord
   tree.first = std::move(groups.first);
   tree.parent = std::move(groups.parent);
   find_rows(renumbered(graph, tree.order), tree);
+  move_pivots(pivot_places(tree), tree);
   return tree;
 }
 

@@ -13,7 +13,7 @@
 //   order[k]                          the node eliminated as the k-th
 //   supernode s                       the nodes order[first[s]] ... order[first[s+1]-1]; parent[s] > s or -1; subtrees are numbered in one
 //   piece row[row_start[s]] ... ascending   places k in the order of the nodes below the pivots of s with an entry of L in them
-//   factor_entries                    entries of L in the lower triangle, with the diagonal, before amalgamation
+//   factor_entries                    entries of L in the lower triangle, with the diagonal, before amalgamation (and pivot_order.h)
 //   factor_flops                      multiplications and additions of the factorisation, likewise: sum over columns of (entries)²
 
 #include <span>
@@ -36,7 +36,8 @@ struct SupernodeTree {
   std::span<const Index> rows(Index s) const { return {row.data() + row_start[s], row.data() + row_start[s + 1]}; }
 };
 
-// `order`: a fill-reducing order of the graph's nodes; the result's order is another one with the same fill-in.
+// `order`: a fill-reducing order of the graph's nodes; the result's order is another one with the same fill-in but for what
+// amalgamation adds.
 SupernodeTree make_supernode_tree(const NodeGraph& graph, std::vector<Index> order, std::span<const Index> weight);
 
 }  // namespace taut
