@@ -28,7 +28,7 @@ Checkpoint sample() {
   c.contacts.sticking = {ContactStick{.sticks = 1, .wait = 5, .longest_wait = 6}};
   c.contacts.normal_force = {ContactForce{.normal = 3.5, .friction = {1, 2, 3}, .inverse_mass = 4.25}};
   c.solver_memory = {1.5, -0.0, 7e-300};
-  c.zones = {{3, 8}, {0, 1}};
+  c.surface_contact = {{{3, 8}, {0, 1}}, {{{1, 2, 3, 4}, {0.5f, -0.0f, 1e-30f}}}};
   return c;
 }
 
@@ -59,7 +59,7 @@ TEST(Checkpoint, ComesBackWhole) {
   EXPECT_TRUE(again.state.v_prev == c.state.v_prev && again.state.last == c.state.last);
   EXPECT_TRUE(again.contacts == c.contacts);
   EXPECT_EQ(again.solver_memory, c.solver_memory);
-  EXPECT_TRUE(again.zones == c.zones);
+  EXPECT_TRUE(again.surface_contact == c.surface_contact);
   EXPECT_EQ(bytes_of(again), bytes_of(c)) << "to the last bit, the sign of zero too";
 }
 

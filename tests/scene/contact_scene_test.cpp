@@ -69,7 +69,7 @@ INSTANTIATE_TEST_SUITE_P(Shipped, ContactScene, testing::ValuesIn(short_forms), 
 
 struct End {
   State state;
-  ZoneState zones;
+  ClothContactState contact;
 };
 
 End run(const Scene& scene, int steps) {
@@ -100,7 +100,7 @@ TEST(ContactSimulation, ResumesToTheSameBitsInTheMidstOfZones) {
   Simulation simulation(scene);
   StepRecord record;
   int steps = 0;
-  while (simulation.surface_contact()->state().node.empty() && ++steps < 300) ASSERT_TRUE(simulation.step(record).ok());
+  while (simulation.surface_contact()->state().zones.node.empty() && ++steps < 300) ASSERT_TRUE(simulation.step(record).ok());
   ASSERT_LT(steps, 300) << "no zone was ever kept";
   EXPECT_GT(record.zone_nodes, 0);
   Simulation resumed(scene);
@@ -120,13 +120,32 @@ TEST(ContactSimulation, ResumesToTheSameBitsInTheMidstOfZones) {
   EXPECT_TRUE(zones_matter) << "the test would not have noticed that zones were lost";
 }
 
+// What pushes a pair is where the next step begins.
+TEST(ContactSimulation, ResumesToTheSameBitsInAHeap) {
+  const Scene scene = shipped("clump", {"cloth.grid.nodes=[25,25]"});
+  Simulation simulation(scene);
+  StepRecord record;
+  for (int k = 0; k < 200; ++k) ASSERT_TRUE(simulation.step(record).ok());
+  const ClothContactState& contact = simulation.surface_contact()->state();
+  ASSERT_GT(contact.forces.size(), 100u);
+  const auto solver_memory = simulation.stepper().solver().memory();
+  Simulation resumed(scene), forgetful(scene);
+  resumed.restore(simulation.state(), simulation.contact().state(), simulation.steps_done(), solver_memory, contact);
+  forgetful.restore(simulation.state(), simulation.contact().state(), simulation.steps_done(), solver_memory, {contact.zones, {}});
+  for (Simulation* s : {&simulation, &resumed, &forgetful}) ASSERT_TRUE(s->step(record).ok());
+  EXPECT_EQ(resumed.state().x, simulation.state().x);
+  EXPECT_EQ(resumed.state().v, simulation.state().v);
+  EXPECT_EQ(resumed.surface_contact()->state(), simulation.surface_contact()->state());
+  EXPECT_NE(forgetful.state().x, simulation.state().x) << "the test would not have noticed that forces were lost";
+}
+
 TEST(ContactSimulation, NodesOfZonesAreEliminatedInTheNextStep) {
   Simulation simulation(shipped("clump", zones_only));
   StepRecord record;
   int steps = 0;
-  while (simulation.surface_contact()->state().node.empty() && ++steps < 300) ASSERT_TRUE(simulation.step(record).ok());
+  while (simulation.surface_contact()->state().zones.node.empty() && ++steps < 300) ASSERT_TRUE(simulation.step(record).ok());
   ASSERT_LT(steps, 300);
-  const std::vector<Index> held = simulation.surface_contact()->state().node;
+  const std::vector<Index> held = simulation.surface_contact()->state().zones.node;
   int eliminated = -1;
   simulation.on_solved = [&](Simulation& s, const SolveSummary&) {
     eliminated = 0;
@@ -134,7 +153,7 @@ TEST(ContactSimulation, NodesOfZonesAreEliminatedInTheNextStep) {
   };
   ASSERT_TRUE(simulation.step(record).ok());
   EXPECT_EQ(eliminated, static_cast<int>(held.size()));
-  for (const Index node : held) EXPECT_EQ(std::ranges::count(simulation.surface_contact()->state().node, node), 0) << "held twice in a row";
+  for (const Index node : held) EXPECT_EQ(std::ranges::count(simulation.surface_contact()->state().zones.node, node), 0) << "held twice in a row";
 }
 
 const std::string thrown = R"(

@@ -127,7 +127,7 @@ TEST(Simulation, GoesOnFromACheckpointToTheSameBits) {
       ASSERT_TRUE(whole.step(record).ok());
     }
     Checkpoint checkpoint = parse_checkpoint(bytes, "state.bin");
-    resumed.restore(checkpoint.state, checkpoint.contacts, checkpoint.steps, checkpoint.solver_memory, checkpoint.zones);
+    resumed.restore(checkpoint.state, checkpoint.contacts, checkpoint.steps, checkpoint.solver_memory, checkpoint.surface_contact);
     for (int k = at; k < 40; ++k) ASSERT_TRUE(resumed.step(record).ok());
     EXPECT_EQ(resumed.steps_done(), 40);
     expect_same(resumed.state(), whole.state(), integrator);

@@ -5,19 +5,42 @@
 #include <cassert>
 #include <numeric>
 
+#include "taut/base/parallel.h"
+
 namespace taut {
 
 namespace {
 
 bool has_pushed(const ContactRow& row) { return row.pushed != Vec3::Zero(); }
+bool touches_solid(const ContactRow& row) { return row.node[1] < 0; }
+
+// Rows that matter here: those that have pushed and those that touch a solid. In their order; few of many bytes each, so that they are
+// looked at once only.
+struct Push {
+  Index row;
+  std::array<Index, 4> node;
+};
+
+std::vector<Push> pushes_of(std::span<const ContactRow> rows) {
+  constexpr Index rows_per_task = 2048;
+  const Index count = static_cast<Index>(rows.size()), tasks = (count + rows_per_task - 1) / rows_per_task;
+  std::vector<std::vector<Push>> found(static_cast<std::size_t>(tasks));
+  parallel_for(tasks, 1, [&](Index begin, Index end) {
+    for (Index t = begin; t < end; ++t)
+      for (Index k = t * rows_per_task; k < std::min(count, (t + 1) * rows_per_task); ++k)
+        if (has_pushed(rows[k]) || touches_solid(rows[k])) found[t].push_back({k, rows[k].node});
+  });
+  std::vector<Push> pushes;
+  for (const auto& part : found) pushes.insert(pushes.end(), part.begin(), part.end());
+  return pushes;
+}
 
 // Nodes that rows have joined. One entry a vertex of the surface: cheaper than to look up the few.
 class Islands {
  public:
-  Islands(std::span<const ContactRow> rows, std::span<const double> inverse_mass)
-      : parent_(inverse_mass.size()), attached_(parent_.size()) {
+  Islands(std::span<const Push> pushes, std::span<const double> inverse_mass) : parent_(inverse_mass.size()), attached_(parent_.size()) {
     std::iota(parent_.begin(), parent_.end(), Index{0});
-    for (const ContactRow& row : rows) add(row, inverse_mass);
+    for (const Push& push : pushes) add(push.node, inverse_mass);
   }
   Index island(Index node) {
     while (parent_[node] != node) node = parent_[node] = parent_[parent_[node]];
@@ -26,15 +49,14 @@ class Islands {
   bool is_attached(Index node) { return attached_[island(node)] != 0; }
 
  private:
-  void add(const ContactRow& row, std::span<const double> inverse_mass) {
-    if (row.node[1] < 0) {  // touches a solid
-      attached_[island(row.node[0])] = 1;
+  void add(const std::array<Index, 4>& nodes, std::span<const double> inverse_mass) {
+    if (nodes[1] < 0) {
+      attached_[island(nodes[0])] = 1;
       return;
     }
-    if (!has_pushed(row)) return;
     Index free = -1;
     bool attached = false;
-    for (const Index node : row.node) {
+    for (const Index node : nodes) {
       attached |= inverse_mass[node] == 0.0;
       if (inverse_mass[node] == 0.0) continue;
       if (free >= 0) join(free, node);
@@ -74,20 +96,21 @@ Vec3 least_angle(const Turn& turn) {
 
 void restore_angular_momentum(std::span<const ContactRow> rows, std::span<const double> mass, std::span<const double> inverse_mass,
                               std::span<const Vec3> lever, std::span<Vec3> x1, std::span<std::uint8_t> moved) {
-  if (std::ranges::none_of(rows, has_pushed)) return;
-  Islands islands(rows, inverse_mass);
+  const std::vector<Push> pushes = pushes_of(rows);
+  if (pushes.empty()) return;
+  Islands islands(pushes, inverse_mass);
   std::vector<Index> turn_of(lever.size(), -1);  // of islands, at their least node
   std::vector<Turn> turns;
   std::vector<std::pair<Index, Index>> members;  // node and its turn
-  const auto add = [&](const ContactRow& row) {
-    if (!has_pushed(row) || row.node[1] < 0) return;
-    const auto free = std::ranges::find_if(row.node, [&](Index node) { return inverse_mass[node] > 0.0; });
+  const auto add = [&](const Push& push) {
+    if (push.node[1] < 0) return;
+    const auto free = std::ranges::find_if(push.node, [&](Index node) { return inverse_mass[node] > 0.0; });
     const Index island = islands.island(*free);
     if (islands.is_attached(island)) return;
     if (turn_of[island] < 0) turn_of[island] = static_cast<Index>(turns.size()), turns.emplace_back();
-    turns[turn_of[island]].missing -= separation(row, lever).cross(row.pushed);
+    turns[turn_of[island]].missing -= separation(rows[push.row], lever).cross(rows[push.row].pushed);
   };
-  for (const ContactRow& row : rows) add(row);
+  for (const Push& push : pushes) add(push);
   if (turns.empty()) return;
   for (Index node = 0; node < std::ssize(lever); ++node)
     if (const Index k = turn_of[islands.island(node)]; k >= 0) members.emplace_back(node, k);

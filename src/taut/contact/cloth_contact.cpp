@@ -53,6 +53,9 @@ struct ClothContact::Work {
   void meet_rows(int iterations, double tolerance) {
     satisfy_rows(rows, *slabs, x1, awake, moved, iterations, tolerance);
     restore_angular_momentum(rows, mass, step.inverse_mass, step.lever, x1, moved);
+    parallel_for(static_cast<Index>(rows.size()), node_grain, [&](Index begin, Index end) {
+      for (Index k = begin; k < end; ++k) rows[k].pushed.setZero();
+    });
     std::ranges::fill(awake, std::uint8_t{0});
   }
   void forget_moved() { std::ranges::fill(moved, std::uint8_t{0}); }
@@ -80,6 +83,7 @@ bool ClothContact::meets_solid(const CollisionPair& pair) const {
 Status ClothContact::resolve(const ClothContactStep& step, std::span<Vec3> x1) {
   counts_ = {};
   zones_ = {};
+  forces_.clear();
   trouble_.clear();
   search_.reset_count();
   Work work(step, x1, mass_, rows_);
@@ -104,14 +108,17 @@ void ClothContact::repel(Work& work) {
   for (const ContactRow& row : touched) vertices.push_back(row.node);
   work.slabs.emplace(vertices, work.step.x0);
   work.rows.resize(vertices.size());
+  const PairForces forces(work.step.forces, surface_->vertices);
   parallel_for(static_cast<Index>(vertices.size()), node_grain, [&](Index begin, Index end) {
     for (Index k = begin; k < end; ++k) {
       ContactRow& row = work.rows[work.slabs->place(k)];
       row = k < std::ssize(near) ? repulsion_row(near[k], thickness_of(near[k].pair), friction_of(near[k].pair)) : touched[k - near.size()];
       weigh(row, work.step.inverse_mass, work.step.x0);
+      if (k < std::ssize(near)) begin_with(row, forces.of(row.node), work.step.h);
     }
   });
   counts_.near_ms += timer.lap();
+  apply_impulses(work.rows, *work.slabs, work.x1, work.moved);
   work.meet_rows(repulsion_iterations, tolerance_share * options_.thickness);
   counts_.impulse_ms += timer.lap();
 }
@@ -218,6 +225,7 @@ void ClothContact::note_touched(const Work& work) {
 void ClothContact::note(const Work& work) {
   note_touched(work);
   counts_.tested = search_.tested();
+  forces_ = forces_of(work.rows, work.step.h, surface_->vertices);
   counts_.pushing = static_cast<int>(std::ranges::count_if(work.rows, [](const ContactRow& row) { return row.lambda > 0.0; }));
   counts_.zones = static_cast<int>(work.zones.zones().size());
   counts_.zone_nodes = work.zones.node_count();

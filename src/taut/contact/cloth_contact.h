@@ -7,7 +7,8 @@
 //   thickness     m: how far apart layers keep when they can
 //   separation    m: how far apart they surely stay: continuous detection reports whatever comes nearer
 //
-//   1  repulsion  pairs nearer than their thickness at x0 must not come nearer, and go a fifth of what is missing apart (repulsion.h)
+//   1  repulsion  pairs nearer than their thickness at x0 must not come nearer, and go a fifth of what is missing apart (repulsion.h);
+//                 they begin with what pushed them in the step before (pair_forces.h)
 //   2  impulses   pairs that collide on the way end apart on the side where they were, with Coulomb friction (impulses.h); repeated for the
 //                 pairs of moved nodes until none collides, at most `sweeps` times. Nodes stay out of analytic solids likewise
 //   3  zones      what still collides moves as rigid bodies, merged as they grow, until nothing collides (rigid_zones.h)
@@ -24,6 +25,7 @@
 
 #include "taut/base/status.h"
 #include "taut/contact/contact_options.h"
+#include "taut/contact/pair_forces.h"
 #include "taut/contact/pair_laws.h"
 #include "taut/contact/pair_search.h"
 #include "taut/contact/rigid_zones.h"
@@ -37,6 +39,8 @@ struct ClothContactStep {
   std::span<const double> inverse_mass;  // 1/kg, 0 for what is held
   std::span<const std::uint8_t> held;    // not 0: ends where x1 says
   const SolidContact* solids = nullptr;  // analytic ones, begun for this step; its nodes are the first vertices
+  double h = 1.0;                        // s: the unit of forces; any will do without them
+  std::span<const PairForce> forces;     // of the step before, from forces(); empty: none known
 };
 
 struct ClothContactCounts {
@@ -58,6 +62,13 @@ struct ZoneState {
   bool operator==(const ZoneState&) const = default;
 };
 
+// What the next step takes over from the last.
+struct ClothContactState {
+  ZoneState zones;
+  std::vector<PairForce> forces;
+  bool operator==(const ClothContactState&) const = default;
+};
+
 inline constexpr std::uint8_t touched_solid = 1, touched_cloth = 2;
 
 class ClothContact {
@@ -76,6 +87,8 @@ class ClothContact {
   double separation() const { return separation_; }
   // Of the last resolve: the nodes that were in zones.
   const ZoneState& zone_state() const { return zones_; }
+  // Of the last resolve: what pushed the pairs, ascending by their first vertex.
+  const std::vector<PairForce>& forces() const { return forces_; }
   // Of the last resolve, one a vertex: who pushed it at the end, cloth (touched_cloth) or a solid (touched_solid).
   std::span<const std::uint8_t> touched() const { return touched_; }
   // After a failure: the nodes that the message is about.
@@ -110,6 +123,7 @@ class ClothContact {
   PairSearch search_;
   ClothContactCounts counts_;
   ZoneState zones_;
+  std::vector<PairForce> forces_;
   std::vector<ContactRow> rows_;  // of the last resolve; kept for its memory
   std::vector<std::uint8_t> touched_;
   std::vector<Index> trouble_;

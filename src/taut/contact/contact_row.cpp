@@ -117,22 +117,41 @@ void weigh(ContactRow& row, std::span<const double> inverse_mass, std::span<cons
   row.start = separation(row, x0);
 }
 
+namespace {
+
+// The groups of the rows, phase after phase: f(g, rows) with all groups of a phase at the same time.
+template <class Function>
+void for_groups(std::span<ContactRow> rows, const RowSlabs& slabs, const Function& f) {
+  for (Index phase = 0; phase < RowSlabs::phases; ++phase) {
+    const Index first = slabs.first_group(phase);
+    parallel_for(slabs.first_group(phase + 1) - first, 1, [&](Index begin, Index end) {
+      for (Index g = first + begin; g < first + end; ++g) {
+        const Index stop = g + 1 == RowSlabs::groups ? static_cast<Index>(rows.size()) : slabs.start(g + 1);
+        f(g, rows.subspan(slabs.start(g), stop - slabs.start(g)));
+      }
+    });
+  }
+}
+
+}  // namespace
+
+void apply_impulses(std::span<ContactRow> rows, const RowSlabs& slabs, std::span<Vec3> x1, std::span<std::uint8_t> moved) {
+  for_groups(rows, slabs, [&](Index, std::span<ContactRow> group) {
+    for (ContactRow& row : group) {
+      if (row.lambda == 0.0) continue;
+      RowNodes nodes(row, x1);
+      nodes.push(row.lambda * row.normal + row.tangential);
+      nodes.store(x1, moved);
+    }
+  });
+}
+
 void satisfy_rows(std::span<ContactRow> rows, const RowSlabs& slabs, std::span<Vec3> x1, std::span<std::uint8_t> awake,
                   std::span<std::uint8_t> moved, int iterations, double tolerance) {
-  for (ContactRow& row : rows) row.pushed.setZero();
-  const auto group = [&](Index g) {
-    const Index end = g + 1 == RowSlabs::groups ? static_cast<Index>(rows.size()) : slabs.start(g + 1);
-    return rows.subspan(slabs.start(g), end - slabs.start(g));
-  };
   std::array<double, RowSlabs::groups> motion;
   for (int k = 0; k < iterations; ++k) {
-    motion.fill(0.0);
-    for (Index phase = 0; phase < RowSlabs::phases; ++phase) {
-      const Index first = slabs.first_group(phase);
-      parallel_for(slabs.first_group(phase + 1) - first, 1, [&](Index begin, Index end) {
-        for (Index g = first + begin; g < first + end; ++g) motion[g] = satisfy_group(group(g), x1, awake, moved, tolerance);
-      });
-    }
+    for_groups(rows, slabs,
+               [&](Index g, std::span<ContactRow> group) { motion[g] = satisfy_group(group, x1, awake, moved, tolerance); });
     if (*std::ranges::max_element(motion) <= tolerance) return;
   }
 }

@@ -32,7 +32,7 @@ struct ContactRow {
   Vec3 carried = Vec3::Zero();    // m: tangential motion over the step that friction aims at; 0 but on a moving solid
   Vec3 start = Vec3::Zero();      // m: r(x0). Filled by weigh
   Vec3 tangential = Vec3::Zero();
-  Vec3 pushed = Vec3::Zero();  // kg m: what the last satisfy_rows gave in all
+  Vec3 pushed = Vec3::Zero();  // kg m: what it gave in all, since whoever uses that set it to 0
 };
 
 // The row's points, apart: r of these positions.
@@ -40,6 +40,9 @@ Vec3 separation(const ContactRow& row, std::span<const Vec3> x);
 
 // x0: m, where the step began.
 void weigh(ContactRow& row, std::span<const double> inverse_mass, std::span<const Vec3> x0);
+
+// Gives the nodes what the rows begin with: lambda n + tangential. In the order of satisfy_rows.
+void apply_impulses(std::span<ContactRow> rows, const RowSlabs& slabs, std::span<Vec3> x1, std::span<std::uint8_t> moved);
 
 // Meets the rows as well as `iterations` rounds of projected Gauss-Seidel can, in the order of `slabs`, where they are in their places, by
 // impulses that keep momentum: x1_k += weight_k / m_k (dlambda n + dtangential). Only rows with a node marked in `awake` are looked at, and

@@ -14,7 +14,7 @@ static_assert(std::endian::native == std::endian::little, "checkpoints are littl
 
 namespace {
 
-constexpr char magic[8] = {'T', 'A', 'U', 'T', 'C', 'K', 'P', '4'};
+constexpr char magic[8] = {'T', 'A', 'U', 'T', 'C', 'K', 'P', '5'};
 
 std::uint64_t checksum(std::string_view bytes) {
   Checksum sum;
@@ -91,8 +91,9 @@ void transfer(Archive& archive, Content& c) {
   archive.list(c.contacts.sticking);
   archive.list(c.contacts.normal_force);
   archive.list(c.solver_memory);
-  archive.list(c.zones.node);
-  archive.list(c.zones.rides);
+  archive.list(c.surface_contact.zones.node);
+  archive.list(c.surface_contact.zones.rides);
+  archive.list(c.surface_contact.forces);
   archive.list(c.files);
 }
 

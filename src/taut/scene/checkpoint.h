@@ -1,9 +1,9 @@
 #pragma once
 // Everything needed to go on with a simulation to the same bits, as one binary file (little-endian):
 //
-//   "TAUTCKP4", then the scene as TOML (length, bytes), steps done, frame, time,
+//   "TAUTCKP5", then the scene as TOML (length, bytes), steps done, frame, time,
 //   has_previous, the arrays x, v, x_prev, v_prev, last (length, doubles), the contacts, the solver's memory, the nodes of rigid zones,
-//   sums of the mesh and motion files, and a checksum (FNV-1a, 64 bits) of all before it
+//   what pushed the surface's pairs, sums of the mesh and motion files, and a checksum (FNV-1a, 64 bits) of all before it
 
 #include <iosfwd>
 #include <string>
@@ -21,7 +21,7 @@ struct Checkpoint {
   State state;
   ContactState contacts;
   std::vector<double> solver_memory;  // ConstrainedSolver::memory
-  ZoneState zones;
+  ClothContactState surface_contact;
   std::vector<std::uint64_t> files;  // sums of what mesh and motion files held (Simulation::input_files)
 };
 

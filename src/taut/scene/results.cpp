@@ -223,7 +223,7 @@ void ResultsFolder::write_checkpoint(const Simulation& simulation, int frame) co
                               simulation.state(),
                               simulation.contact().state(),
                               simulation.stepper().solver().memory(),
-                              surface_contact ? surface_contact->state() : ZoneState{},
+                              surface_contact ? surface_contact->state() : ClothContactState{},
                               sums_of(simulation.input_files())};
   write_file(checkpoint_file(), [&](std::ostream& out) { write(out, checkpoint); });
 }
@@ -245,7 +245,7 @@ CheckpointPlace ResultsFolder::read_checkpoint(Simulation& simulation) const {
                      fmt::format("has {} nodes and {} mesh files, the scene has {} and {}: run the scene anew with `taut run`",
                                  checkpoint.state.x.size(), checkpoint.files.size(), simulation.cloth().nodes(), files.size()));
   simulation.restore(std::move(checkpoint.state), std::move(checkpoint.contacts), checkpoint.steps, checkpoint.solver_memory,
-                     std::move(checkpoint.zones));
+                     std::move(checkpoint.surface_contact));
   return {checkpoint.frame, checkpoint.scene != scene};
 }
 

@@ -66,11 +66,12 @@ std::vector<InputFile> Simulation::input_files() const {
   return files;
 }
 
-void Simulation::restore(State state, ContactState contacts, int steps, std::span<const double> solver_memory, ZoneState zones) {
+void Simulation::restore(State state, ContactState contacts, int steps, std::span<const double> solver_memory,
+                         ClothContactState surface_contact) {
   stepper_.solver().restore_memory(solver_memory);
   state_ = std::move(state);
   contact_.restore(std::move(contacts));
-  if (surface_contact_) surface_contact_->restore(std::move(zones));
+  if (surface_contact_) surface_contact_->restore(std::move(surface_contact));
   steps_ = steps;
 }
 
@@ -109,7 +110,7 @@ Status Simulation::advance_halves(double h, int halvings, StepRecord& record) {
   ++record.retries;
   const State state = state_;
   const ContactState contacts = contact_.state();
-  const ZoneState zones = surface_contact_ ? surface_contact_->state() : ZoneState{};
+  const ClothContactState surface_contact = surface_contact_ ? surface_contact_->state() : ClothContactState{};
   Status status;
   for (int half = 0; half < 2 && status.ok(); ++half) {
     stepper_.start_afresh(state_);
@@ -120,7 +121,7 @@ Status Simulation::advance_halves(double h, int halvings, StepRecord& record) {
   } else {
     state_ = state;
     contact_.restore(contacts);
-    if (surface_contact_) surface_contact_->restore(zones);
+    if (surface_contact_) surface_contact_->restore(surface_contact);
     if (halvings + 1 == scene_.time.max_halvings) status.message += fmt::format(" (also with steps of {:.3g} s)", h / 2);
   }
   return status;

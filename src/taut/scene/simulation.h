@@ -86,7 +86,8 @@ class Simulation {
   const SurfaceContact* surface_contact() const { return surface_contact_.get(); }
 
   // Goes on from a checkpoint.
-  void restore(State state, ContactState contacts, int steps, std::span<const double> solver_memory = {}, ZoneState zones = {});
+  void restore(State state, ContactState contacts, int steps, std::span<const double> solver_memory = {},
+               ClothContactState surface_contact = {});
   // Called after the last pass of a step, before it is committed: the solved system is in stepper().system(). For dumps and benches.
   // A step that is then redone in halves calls it once, for the whole.
   std::function<void(Simulation&, const SolveSummary&)> on_solved;

@@ -83,10 +83,10 @@ void SurfaceContact::refuse_intersections(std::span<const Vec3> start) {
 }
 
 void SurfaceContact::hold_zones(const State& state, double h, ConstraintSet& constraints) const {
-  for (std::size_t k = 0; k < kept_.node.size(); ++k) {
-    const Index node = kept_.node[k];
+  for (std::size_t k = 0; k < kept_.zones.node.size(); ++k) {
+    const Index node = kept_.zones.node[k];
     if (constraints.ndof(node) == 0) continue;
-    const Vec3 fall = kept_.rides[k] ? Vec3(Vec3::Zero()) : Vec3(h * h * gravity_);
+    const Vec3 fall = kept_.zones.rides[k] ? Vec3(Vec3::Zero()) : Vec3(h * h * gravity_);
     constraints.fix(node, h * state.v[node] + fall);
   }
 }
@@ -108,7 +108,7 @@ Status SurfaceContact::correct(double t, double h, std::span<const Vec3> x0, std
   place_solids(t + h, x1_);
   lever_ = x0_;
   for (Index i = 0; i < nodes_; ++i) lever_[i] = x_end[i] - h * v_end[i];
-  const Status status = contact_->resolve({x0_, lever_, inverse_mass_, held_, &solids}, x1_);
+  const Status status = contact_->resolve({x0_, lever_, inverse_mass_, held_, &solids, h, kept_.forces}, x1_);
   if (!status.ok()) return status;
   for (Index i = 0; i < nodes_; ++i) {
     if (x1_[i] == x_end[i]) continue;
@@ -119,21 +119,27 @@ Status SurfaceContact::correct(double t, double h, std::span<const Vec3> x0, std
 }
 
 void SurfaceContact::keep() {
-  const ZoneState held = std::move(kept_);
-  kept_ = {};
+  const ZoneState held = std::move(kept_.zones);
+  kept_ = {{}, contact_->forces()};
   const ZoneState& zones = contact_->zone_state();
   for (std::size_t k = 0; k < zones.node.size(); ++k) {
     if (std::ranges::binary_search(held.node, zones.node[k])) continue;
-    kept_.node.push_back(zones.node[k]);
-    kept_.rides.push_back(zones.rides[k]);
+    kept_.zones.node.push_back(zones.node[k]);
+    kept_.zones.rides.push_back(zones.rides[k]);
   }
 }
 
-void SurfaceContact::restore(ZoneState state) {
-  const bool ordered = std::ranges::is_sorted(state.node, std::ranges::less_equal{});
-  const bool inside = state.node.empty() || (state.node.front() >= 0 && state.node.back() < nodes_);
-  if (!ordered || !inside || state.rides.size() != state.node.size())
+void SurfaceContact::restore(ClothContactState state) {
+  const ZoneState& zones = state.zones;
+  const bool ordered = std::ranges::is_sorted(zones.node, std::ranges::less_equal{});
+  const bool inside = zones.node.empty() || (zones.node.front() >= 0 && zones.node.back() < nodes_);
+  if (!ordered || !inside || zones.rides.size() != zones.node.size())
     throw InputError(fmt::format("zones: expected ascending nodes below {}: the checkpoint belongs to another scene", nodes_));
+  const auto is_vertex = [&](Index v) { return v >= 0 && v < std::ssize(mass_); };
+  const auto first_of = [](const PairForce& entry) { return entry.node[0]; };
+  if (!std::ranges::all_of(state.forces, [&](const PairForce& entry) { return std::ranges::all_of(entry.node, is_vertex); }) ||
+      !std::ranges::is_sorted(state.forces, {}, first_of))
+    throw InputError(fmt::format("forces: expected ascending vertices below {}: the checkpoint belongs to another scene", mass_.size()));
   kept_ = std::move(state);
 }
 

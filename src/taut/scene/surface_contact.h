@@ -34,7 +34,7 @@ class SurfaceContact {
   // in `changed` if any node was moved, for which v_end must then change by as much over h.
   Status correct(double t, double h, std::span<const Vec3> x0, std::span<const Vec3> v_end, const ConstraintSet& pins,
                  const SolidContact& solids, std::span<Vec3> x_end, bool& changed);
-  // The corrected step counts: its zones are held in the next.
+  // The corrected step counts: its zones are held in the next, whose pairs begin with its forces.
   void keep();
 
   // All vertices of the surface at this time: the cloths' at x, then the solids'.
@@ -47,11 +47,11 @@ class SurfaceContact {
   std::span<const MeshSolid> solids() const { return solids_; }
   const ClothContactCounts& counts() const { return contact_->counts(); }
   const ClothContact& contact() const { return *contact_; }
-  const ZoneState& state() const { return kept_; }
+  const ClothContactState& state() const { return kept_; }
   // What was done to the start; null without contact.untangle.
   const UntangleReport* untangled() const { return untangled_ ? &*untangled_ : nullptr; }
   // Throws InputError on a state that does not fit.
-  void restore(ZoneState state);
+  void restore(ClothContactState state);
 
  private:
   void weigh_nodes(const ConstraintSet& pins);
@@ -65,7 +65,7 @@ class SurfaceContact {
   std::vector<MeshSolid> solids_;
   std::vector<double> mass_;
   std::unique_ptr<ClothContact> contact_;
-  ZoneState kept_;
+  ClothContactState kept_;
   std::optional<UntangleReport> untangled_;
   std::vector<Vec3> x0_, x1_, lever_;
   std::vector<double> inverse_mass_;
