@@ -21,7 +21,21 @@ using test::PairKind;
 
 constexpr PairKind kinds[] = {PairKind::vertex_triangle, PairKind::edge_edge};
 
-std::vector<std::uint8_t> flags_of(PairKind kind, const std::vector<Corners>& pairs, double distance) {
+std::vector<std::uint8_t> flags_of(bool single, const std::vector<PairCorners>& corners, bool edges, const std::vector<Vec3>& x0,
+                                   const std::vector<Vec3>& x1, double distance) {
+  std::vector<std::uint8_t> flags(corners.size(), 255);
+  const auto count = static_cast<Index>(corners.size());
+  if (single) {
+    detail::FloatWays ways;
+    ways.set(x0, x1);
+    ways.find_clear(corners.data(), count, edges, distance, flags.data());
+  } else {
+    detail::find_clear(corners.data(), count, edges, x0.data(), x1.data(), distance, flags.data());
+  }
+  return flags;
+}
+
+std::vector<std::uint8_t> flags_of(bool single, PairKind kind, const std::vector<Corners>& pairs, double distance) {
   std::vector<Vec3> x0, x1;
   std::vector<PairCorners> corners;
   for (const Corners& x : pairs) {
@@ -30,10 +44,7 @@ std::vector<std::uint8_t> flags_of(PairKind kind, const std::vector<Corners>& pa
     x0.insert(x0.end(), x.begin(), x.begin() + 4);
     x1.insert(x1.end(), x.begin() + 4, x.end());
   }
-  std::vector<std::uint8_t> flags(pairs.size(), 255);
-  detail::find_clear(corners.data(), static_cast<Index>(pairs.size()), kind == PairKind::edge_edge, x0.data(), x1.data(), distance,
-                     flags.data());
-  return flags;
+  return flags_of(single, corners, kind == PairKind::edge_edge, x0, x1, distance);
 }
 
 Corners random_pair(std::mt19937& random, double apart, double motion) {
@@ -46,20 +57,26 @@ Corners random_pair(std::mt19937& random, double apart, double motion) {
   return x;
 }
 
+// In double and in single precision.
+class ClearPairs : public testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(Precisions, ClearPairs, testing::Bool(), [](const auto& single) { return single.param ? "single" : "double"; });
+
 }  // namespace
 
-TEST(ClearPairs, AreFurtherApartAllTheTime) {
+TEST_P(ClearPairs, AreFurtherApartAllTheTime) {
   std::mt19937 random(1);
   for (const PairKind kind : kinds)
     for (const double motion : {0.0, 0.1, 1.0}) {
       std::vector<Corners> pairs;
-      for (int k = 0; k < 1001; ++k) pairs.push_back(random_pair(random, 1.5, motion));  // not a multiple of four
+      for (int k = 0; k < 1001; ++k) pairs.push_back(random_pair(random, 1.5, motion));  // not a multiple of the lanes
       constexpr double distance = 0.2;
-      const std::vector<std::uint8_t> flags = flags_of(kind, pairs, distance);
+      const std::vector<std::uint8_t> flags = flags_of(GetParam(), kind, pairs, distance);
       int clear = 0;
       for (std::size_t k = 0; k < pairs.size(); ++k) {
         ASSERT_LT(flags[k], 4);
-        if (flags[k] & detail::clear_at_start) EXPECT_GT(test::distance_at(kind, pairs[k], 0), distance);
+        if (flags[k] & detail::clear_at_start) {
+          EXPECT_GT(test::distance_at(kind, pairs[k], 0), distance);
+        }
         if (!(flags[k] & detail::clear_throughout)) continue;
         ++clear;
         for (int t = 0; t <= 32; ++t) EXPECT_GT(test::distance_at(kind, pairs[k], t / 32.0L), distance) << k;
@@ -70,7 +87,7 @@ TEST(ClearPairs, AreFurtherApartAllTheTime) {
 
 // Vertices on a face, edges that cross: exactly `gap` apart at one end, in numbers that are exact. Turned and scaled by powers of two and
 // swapped axes, they stay so.
-TEST(ClearPairs, NoneIsClearOfTheDistanceItHas) {
+TEST_P(ClearPairs, NoneIsClearOfTheDistanceItHas) {
   std::mt19937 random(2);
   std::uniform_int_distribution<int> any(-8, 8), exponent(-40, 40);
   for (const PairKind kind : kinds)
@@ -93,12 +110,14 @@ TEST(ClearPairs, NoneIsClearOfTheDistanceItHas) {
       const int turn = any(random) & 1;
       for (Vec3& corner : x)
         if (turn) corner = Vec3(corner[1], corner[2], corner[0]);
-      EXPECT_FALSE(flags_of(kind, {x}, gap)[0] & detail::clear_throughout);
-      if (!touch_at_end) EXPECT_FALSE(flags_of(kind, {x}, gap)[0] & detail::clear_at_start);
+      EXPECT_FALSE(flags_of(GetParam(), kind, {x}, gap)[0] & detail::clear_throughout);
+      if (!touch_at_end) {
+        EXPECT_FALSE(flags_of(GetParam(), kind, {x}, gap)[0] & detail::clear_at_start);
+      }
     }
 }
 
-TEST(ClearPairs, NumbersThatAreNotFiniteAreNotClear) {
+TEST_P(ClearPairs, NumbersThatAreNotFiniteAreNotClear) {
   std::mt19937 random(3);
   for (const PairKind kind : kinds)
     for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e200})
@@ -107,15 +126,48 @@ TEST(ClearPairs, NumbersThatAreNotFiniteAreNotClear) {
         for (int k = 0; k < 2; ++k) x[k][0] += 100.0, x[k + 4][0] += 100.0;  // far apart without the bad number
         if (std::isfinite(bad)) x[0] = x[4] = x[2] = x[6];                   // huge, and touching
         x[corner][1] = bad;
-        if (!std::isfinite(bad)) EXPECT_FALSE(flags_of(kind, {x}, 0.1)[0] & detail::clear_throughout);
+        if (!std::isfinite(bad)) {
+          EXPECT_FALSE(flags_of(GetParam(), kind, {x}, 0.1)[0] & detail::clear_throughout);
+        }
       }
   Corners tiny;
   for (Vec3& corner : tiny) corner = test::anywhere(random, 1e-160);
-  for (const PairKind kind : kinds) EXPECT_EQ(flags_of(kind, {tiny}, 1e-150)[0], 0);
+  for (const PairKind kind : kinds) EXPECT_EQ(flags_of(GetParam(), kind, {tiny}, 1e-150)[0], 0);
+}
+
+// Far from the origin, where floats are a thousandth of the distance apart and more, and with ends that move far.
+TEST(ClearPairsInSingle, AreFurtherApartWhereverTheyAre) {
+  std::mt19937 random(4);
+  for (const PairKind kind : kinds)
+    for (const double size : {1.0, 100.0, 1e4}) {
+      std::vector<Corners> pairs;
+      for (int k = 0; k < 1000; ++k) {
+        Corners x = random_pair(random, 1.5, 0.3);
+        const Vec3 place = 1e6 * Vec3(1, 2, 3) + test::anywhere(random, size);
+        for (Vec3& corner : x) corner = 0.01 * corner + place;
+        pairs.push_back(x);
+      }
+      constexpr double distance = 0.002;
+      const std::vector<std::uint8_t> flags = flags_of(true, kind, pairs, distance), exact = flags_of(false, kind, pairs, distance);
+      int missed = 0, clear = 0;
+      for (std::size_t k = 0; k < pairs.size(); ++k) {
+        clear += exact[k] == (detail::clear_at_start | detail::clear_throughout);
+        missed += flags[k] != exact[k];
+        if (flags[k] & detail::clear_at_start) {
+          EXPECT_GT(test::distance_at(kind, pairs[k], 0), distance);
+        }
+        if (!(flags[k] & detail::clear_throughout)) continue;
+        for (int t = 0; t <= 8; ++t) EXPECT_GT(test::distance_at(kind, pairs[k], t / 8.0L), distance) << k;
+      }
+      EXPECT_GT(clear, 100);
+      if (size <= 1.0) {
+        EXPECT_LT(missed, 5) << "it is as good where the cloth is a thousand times its thickness";
+      }
+    }
 }
 
 // What it is for: neighbours in smooth cloth need no closest points.
-TEST(ClearPairs, NeighboursInASmoothSheetAreClear) {
+TEST_P(ClearPairs, NeighboursInASmoothSheetAreClear) {
   TriangleMesh sheet = make_grid({20, 20});
   const Mat3 turn = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
   for (Vec3& x : sheet.positions) x = turn * Vec3(x[0], x[1], x[2] + 0.2 * x[0] * x[0] + 0.1 * x[1] * x[0]);
@@ -127,9 +179,7 @@ TEST(ClearPairs, NeighboursInASmoothSheetAreClear) {
   const auto share_clear = [&](const auto& pairs, bool edges) {
     std::vector<PairCorners> corners;
     for (const auto& pair : pairs) corners.push_back(pair_of(surface, pair).node);
-    std::vector<std::uint8_t> flags(corners.size());
-    detail::find_clear(corners.data(), static_cast<Index>(corners.size()), edges, sheet.positions.data(), sheet.positions.data(), distance,
-                       flags.data());
+    const std::vector<std::uint8_t> flags = flags_of(GetParam(), corners, edges, sheet.positions, sheet.positions, distance);
     EXPECT_GT(corners.size(), 100u);
     return static_cast<double>(std::ranges::count(flags, detail::clear_at_start | detail::clear_throughout)) / double(flags.size());
   };

@@ -60,7 +60,7 @@ struct Pieces {
     ClothContact contact(surface(), bodies, x0, mass, options);
     Result result;
     result.x1 = x1;
-    result.status = contact.resolve({x0, x0, inverse_mass, held, nullptr}, result.x1);
+    result.status = contact.resolve({x0, x0, inverse_mass, held, nullptr, 1.0, {}}, result.x1);
     result.counts = contact.counts();
     result.zones = contact.zone_state();
     return result;

@@ -12,27 +12,26 @@ namespace {
 // Of the tolerance: what is not worth that a node's pairs are searched again.
 constexpr double negligible = 0.1;
 
-// A row's nodes while it is met.
+// A row's nodes while it is met: `Count` of them.
+template <std::size_t Count>
 struct RowNodes {
   ContactRow& row;
-  std::array<Vec3, 4> x;
-  std::size_t count = 0;
+  std::array<Vec3, Count> x;
 
   RowNodes(ContactRow& the_row, std::span<const Vec3> x1) : row(the_row) {
-    for (; count < 4 && row.node[count] >= 0; ++count) x[count] = x1[row.node[count]];
+    for (std::size_t k = 0; k < Count; ++k) x[k] = x1[row.node[k]];
   }
   Vec3 separation() const {
-    Vec3 sum = Vec3::Zero();
-    for (std::size_t k = 0; k < count; ++k) sum += row.weight[k] * x[k];
+    Vec3 sum = row.weight[0] * x[0];
+    for (std::size_t k = 1; k < Count; ++k) sum += row.weight[k] * x[k];
     return sum;
   }
   void push(const Vec3& impulse) {
     row.pushed += impulse;
-    for (std::size_t k = 0; k < count; ++k)
-      if (row.share[k] != 0.0) x[k] += row.share[k] * impulse;
+    for (std::size_t k = 0; k < Count; ++k) x[k] += row.share[k] * impulse;
   }
   void store(std::span<Vec3> x1, std::span<std::uint8_t> moved) const {
-    for (std::size_t k = 0; k < count; ++k) {
+    for (std::size_t k = 0; k < Count; ++k) {
       if (row.share[k] == 0.0) continue;
       x1[row.node[k]] = x[k];
       if (!moved[row.node[k]]) moved[row.node[k]] = 1;
@@ -40,21 +39,28 @@ struct RowNodes {
   }
 };
 
+// f(nodes)
+template <class Function>
+auto with_nodes(ContactRow& row, std::span<const Vec3> x1, const Function& f) {
+  return row.node[1] < 0 ? f(RowNodes<1>(row, x1)) : f(RowNodes<4>(row, x1));
+}
+
 // What friction adds to bring the tangential motion to that of the other side, within Coulomb's cone.
-Vec3 friction_step(const ContactRow& row, const Vec3& r) {
+Vec3 friction_step(const ContactRow& row, const Vec3& r, double mass) {
   const Vec3 motion = r - row.start - row.carried;
   const Vec3 slip = motion - row.normal.dot(motion) * row.normal;
-  Vec3 wanted = row.tangential - slip / row.inverse_mass;
-  const double limit = row.friction * row.lambda, size = wanted.norm();
-  if (size > limit) wanted *= limit / size;
+  Vec3 wanted = row.tangential - mass * slip;
+  const double limit = row.friction * row.lambda, size2 = wanted.squaredNorm();
+  if (size2 > limit * limit) wanted *= limit / std::sqrt(size2);
   return wanted - row.tangential;
 }
 
 // Returns how far the row's points moved against one another.
-double satisfy(ContactRow& row, std::span<Vec3> x1, std::span<std::uint8_t> moved, double tolerance) {
-  RowNodes nodes(row, x1);
-  const double missing = row.target - row.normal.dot(nodes.separation());
-  const double lambda = std::max(0.0, row.lambda + missing / row.inverse_mass);
+template <class Nodes>
+double satisfy(Nodes nodes, std::span<Vec3> x1, std::span<std::uint8_t> moved, double tolerance) {
+  ContactRow& row = nodes.row;
+  const double missing = row.target - row.normal.dot(nodes.separation()), mass = 1.0 / row.inverse_mass;
+  const double lambda = std::max(0.0, row.lambda + missing * mass);
   if (lambda == 0.0 && row.lambda == 0.0) return 0.0;
   double motion = std::abs(lambda - row.lambda) * row.inverse_mass;
   if (motion > negligible * tolerance) {
@@ -64,7 +70,7 @@ double satisfy(ContactRow& row, std::span<Vec3> x1, std::span<std::uint8_t> move
     motion = 0.0;
   }
   if (row.friction != 0.0) {
-    const Vec3 tangential = friction_step(row, nodes.separation());
+    const Vec3 tangential = friction_step(row, nodes.separation(), mass);
     const double sideways = tangential.norm() * row.inverse_mass;
     if (sideways > negligible * tolerance) {
       row.tangential += tangential;
@@ -93,7 +99,7 @@ double satisfy_group(std::span<ContactRow> group, std::span<Vec3> x1, std::span<
   double largest = 0.0;
   for (ContactRow& row : group) {
     if (row.inverse_mass == 0.0 || !is_awake(row, awake)) continue;
-    const double motion = satisfy(row, x1, moved, tolerance);
+    const double motion = with_nodes(row, x1, [&](const auto& nodes) { return satisfy(nodes, x1, moved, tolerance); });
     if (motion > 0.0) wake(row, awake);
     largest = std::max(largest, motion);
   }
@@ -139,9 +145,10 @@ void apply_impulses(std::span<ContactRow> rows, const RowSlabs& slabs, std::span
   for_groups(rows, slabs, [&](Index, std::span<ContactRow> group) {
     for (ContactRow& row : group) {
       if (row.lambda == 0.0) continue;
-      RowNodes nodes(row, x1);
-      nodes.push(row.lambda * row.normal + row.tangential);
-      nodes.store(x1, moved);
+      with_nodes(row, x1, [&](auto nodes) {
+        nodes.push(row.lambda * row.normal + row.tangential);
+        nodes.store(x1, moved);
+      });
     }
   });
 }

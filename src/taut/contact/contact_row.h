@@ -21,7 +21,7 @@ namespace taut {
 
 struct ContactRow {
   // What every visit reads comes first.
-  std::array<Index, 4> node{-1, -1, -1, -1};  // -1: fewer than four
+  std::array<Index, 4> node{-1, -1, -1, -1};  // four, or one: then -1
   std::array<double, 4> weight{};
   double inverse_mass = 0.0;  // 1/kg: sum_k weight_k² / m_k; 0: nothing here can move. Filled by weigh
   Vec3 normal = Vec3::UnitZ();

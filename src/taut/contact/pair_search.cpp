@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "taut/base/parallel.h"
-#include "taut/contact/detection/clear_pairs.h"
 
 namespace taut {
 
@@ -20,7 +19,7 @@ bool any_in(const std::array<Index, 4>& nodes, std::span<const std::uint8_t> mar
 
 // Adds those of the broad phase's pairs that come within reach on the way to end_, and to `close` those that may be within it at the start.
 template <class Pair>
-void PairSearch::keep_candidates(const std::vector<Pair>& pairs, std::span<const Vec3> x0, Candidates& candidates,
+void PairSearch::keep_candidates(const std::vector<Pair>& pairs, Candidates& candidates,
                                  std::vector<CollisionPair>* close) {
   const Index count = static_cast<Index>(pairs.size()), chunks = (count + chunk - 1) / chunk;
   std::vector<std::vector<Corners>> kept(static_cast<std::size_t>(chunks));
@@ -31,7 +30,7 @@ void PairSearch::keep_candidates(const std::vector<Pair>& pairs, std::span<const
     for (Index c = begin; c < end; ++c) {
       const Index first = c * chunk, in_chunk = std::min(chunk, count - first);
       for (Index k = 0; k < in_chunk; ++k) corners[k] = pair_of(broad_phase_.surface(), pairs[first + k]).node;
-      detail::find_clear(corners.data(), in_chunk, candidates.edges, x0.data(), end_.data(), reach_, clear.data());
+      ways_.find_clear(corners.data(), in_chunk, candidates.edges, reach_, clear.data());
       for (Index k = 0; k < in_chunk; ++k) {
         if (clear[k] & detail::clear_throughout) continue;
         kept[c].push_back(corners[k]);
@@ -46,11 +45,12 @@ void PairSearch::keep_candidates(const std::vector<Pair>& pairs, std::span<const
 
 void PairSearch::add_candidates(std::span<const Vec3> x0, std::span<const std::uint8_t> moved, std::vector<CollisionPair>* close) {
   broad_phase_.refit(x0, end_, reach_);
+  ways_.set(x0, end_);
   broad_phase_.find_vertex_triangle(vertex_triangle_, moved);
   broad_phase_.find_edge_edge(edge_edge_, moved);
   tested_ += std::ssize(vertex_triangle_) + std::ssize(edge_edge_);
-  keep_candidates(vertex_triangle_, x0, triangles_, close);
-  keep_candidates(edge_edge_, x0, edges_, close);
+  keep_candidates(vertex_triangle_, triangles_, close);
+  keep_candidates(edge_edge_, edges_, close);
 }
 
 std::vector<NearPair> PairSearch::near(std::span<const Vec3> x0, std::span<const Vec3> x1, double reach,

@@ -14,6 +14,7 @@
 #include <functional>
 
 #include "taut/contact/collision_pair.h"
+#include "taut/contact/detection/clear_pairs.h"
 
 namespace taut {
 
@@ -55,7 +56,7 @@ class PairSearch {
   };
   void add_candidates(std::span<const Vec3> x0, std::span<const std::uint8_t> moved, std::vector<CollisionPair>* close);
   template <class Pair>
-  void keep_candidates(const std::vector<Pair>& pairs, std::span<const Vec3> x0, Candidates& candidates, std::vector<CollisionPair>* close);
+  void keep_candidates(const std::vector<Pair>& pairs, Candidates& candidates, std::vector<CollisionPair>* close);
   void follow(std::span<const Vec3> x0, std::span<const Vec3> x1, double separation);
   void add_colliding(const Candidates& candidates, std::span<const Vec3> x0, std::span<const Vec3> x1, double separation,
                      std::span<const std::uint8_t> moved, const std::function<bool(const CollisionPair&)>& skip,
@@ -64,6 +65,7 @@ class PairSearch {
   BroadPhase broad_phase_;
   double reach_ = 0.0;
   std::vector<Vec3> end_;  // the candidates' x1
+  detail::FloatWays ways_;  // from x0 to end_
   Candidates triangles_, edges_{{}, true};
   std::vector<std::uint8_t> far_;  // nodes whose end is further away from that than slack
   // Kept for their memory.

@@ -40,7 +40,7 @@ class Settling {
     project_lengths(input_.surface, ranges_, input_.held, end, length_iterations);
     const auto nodes = static_cast<std::size_t>(pins_.nodes());
     solids_->begin_step(0.0, 1.0, std::span<const Vec3>(x).first(nodes), std::span<const Vec3>(end).first(nodes), pins_);
-    if (!contact_.resolve({x, x, inverse_mass_, input_.held, solids_.get()}, end).ok()) return false;
+    if (!contact_.resolve({x, x, inverse_mass_, input_.held, solids_.get(), 1.0, {}}, end).ok()) return false;
     std::ranges::copy(end, x.begin());
     return true;
   }

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "taut/base/parallel.h"
 #include "taut/base/simd.h"
 
 #if defined(__GNUC__) && !defined(__clang__)
@@ -13,114 +15,209 @@ namespace taut::detail {
 
 namespace {
 
-using Lanes = double __attribute__((vector_size(32)));  // one a pair
-using LaneMask = long long __attribute__((vector_size(32)));
-constexpr Index lanes = 4;
+// One lane a pair.
+template <class T>
+constexpr Index lanes = 32 / static_cast<Index>(sizeof(T));
+typedef double DoubleLanes __attribute__((vector_size(32)));
+typedef float FloatLanes __attribute__((vector_size(32)));
+typedef std::int64_t DoubleMask __attribute__((vector_size(32)));
+typedef std::int32_t FloatMask __attribute__((vector_size(32)));
 
-// Bounds all rounding between given coordinates and a tested inequality: 16 u, where 10 u would do (docs/mathematics.md, 6.3).
-constexpr double rounding_bound = 16.0 * 0x1p-53;
-constexpr double underflow_bound = 1e-307;
-constexpr double least_square = 1e-280;  // of a normal: below, its length is lost in underflow
+// Of a precision with unit roundoff u.
+template <class T>
+struct Precision;
+template <>
+struct Precision<double> {
+  using Lanes = DoubleLanes;
+  using Mask = DoubleMask;
+  static constexpr double u = 0x1p-53, underflow_bound = 1e-307;
+  static constexpr double least_square = 1e-280;  // of a normal: below, its length is lost in underflow
+};
+template <>
+struct Precision<float> {
+  using Lanes = FloatLanes;
+  using Mask = FloatMask;
+  static constexpr float u = 0x1p-24f, underflow_bound = 1e-36f;
+  static constexpr float least_square = 1e-28f;
+};
 
+// Bounds all rounding between the coordinates and a tested inequality, in units of u, where 10 would do (docs/mathematics.md, 6.3).
+constexpr int rounding_bound = 16;
+
+template <class T>
+using Lanes = typename Precision<T>::Lanes;
+template <class T>
+using LaneMask = typename Precision<T>::Mask;
+
+template <class T>
+TAUT_ALWAYS_INLINE LaneMask<T> sign_bit() {
+  return (LaneMask<T>)(-Lanes<T>{});
+}
+
+template <class T>
 struct Lanes3 {
-  Lanes x, y, z;
+  Lanes<T> x, y, z;
+
+  TAUT_ALWAYS_INLINE friend Lanes3 operator+(const Lanes3& a, const Lanes3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+  TAUT_ALWAYS_INLINE friend Lanes3 operator-(const Lanes3& a, const Lanes3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+  TAUT_ALWAYS_INLINE friend Lanes3 operator*(const Lanes<T>& s, const Lanes3& a) { return {s * a.x, s * a.y, s * a.z}; }
+  TAUT_ALWAYS_INLINE friend Lanes<T> dot(const Lanes3& a, const Lanes3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+  TAUT_ALWAYS_INLINE friend Lanes3 cross(const Lanes3& a, const Lanes3& b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+  }
+  TAUT_ALWAYS_INLINE friend Lanes3 absolute(const Lanes3& a) { return {magnitude(a.x), magnitude(a.y), magnitude(a.z)}; }
+  TAUT_ALWAYS_INLINE friend Lanes3 orthogonal(const Lanes3& w, const Lanes3& e) { return w - (dot(w, e) / dot(e, e)) * e; }
+
+ private:
+  TAUT_ALWAYS_INLINE static Lanes<T> magnitude(const Lanes<T>& a) { return (Lanes<T>)((LaneMask<T>)a & ~sign_bit<T>()); }
 };
 
-TAUT_ALWAYS_INLINE Lanes3 operator+(const Lanes3& a, const Lanes3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-TAUT_ALWAYS_INLINE Lanes3 operator-(const Lanes3& a, const Lanes3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-TAUT_ALWAYS_INLINE Lanes3 operator*(const Lanes& s, const Lanes3& a) { return {s * a.x, s * a.y, s * a.z}; }
-TAUT_ALWAYS_INLINE Lanes dot(const Lanes3& a, const Lanes3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-TAUT_ALWAYS_INLINE Lanes3 cross(const Lanes3& a, const Lanes3& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+template <class T>
+TAUT_ALWAYS_INLINE Lanes<T> smaller(const Lanes<T>& a, const Lanes<T>& b) {
+  return a < b ? a : b;
 }
-TAUT_ALWAYS_INLINE Lanes absolute(const Lanes& a) { return a > 0.0 ? a : -a; }
-TAUT_ALWAYS_INLINE Lanes3 absolute(const Lanes3& a) { return {absolute(a.x), absolute(a.y), absolute(a.z)}; }
-TAUT_ALWAYS_INLINE Lanes smaller(const Lanes& a, const Lanes& b) { return a < b ? a : b; }
-TAUT_ALWAYS_INLINE Lanes larger(const Lanes& a, const Lanes& b) { return a > b ? a : b; }
-TAUT_ALWAYS_INLINE Lanes3 orthogonal(const Lanes3& w, const Lanes3& e) { return w - (dot(w, e) / dot(e, e)) * e; }
-TAUT_ALWAYS_INLINE Lanes root(const Lanes& a) { return Lanes{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])}; }
+template <class T>
+TAUT_ALWAYS_INLINE Lanes<T> larger(const Lanes<T>& a, const Lanes<T>& b) {
+  return a > b ? a : b;
+}
+TAUT_ALWAYS_INLINE DoubleLanes root(const DoubleLanes& a) {
+  return DoubleLanes{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])};
+}
+TAUT_ALWAYS_INLINE FloatLanes root(const FloatLanes& a) {
+  return FloatLanes{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3]),
+                    std::sqrt(a[4]), std::sqrt(a[5]), std::sqrt(a[6]), std::sqrt(a[7])};
+}
 
-// A pair at one time. between: from the first corner of the second shape to the first of the first; first and second: edges a b and c d; of
+// Pairs at one time. between: from the first corner of the second shape to the first of the first; first and second: edges a b and c d; of
 // a triangle, both sides at its first corner.
+template <class T>
 struct Shapes {
-  Lanes3 between, first, second;
+  Lanes3<T> between, first, second;
 };
 
-TAUT_ALWAYS_INLINE Lanes3 corner(const PairCorners* pairs, int k, const Vec3* x) {
-  const double *a = x[pairs[0][k]].data(), *b = x[pairs[1][k]].data(), *c = x[pairs[2][k]].data(), *d = x[pairs[3][k]].data();
-  return {Lanes{a[0], b[0], c[0], d[0]}, Lanes{a[1], b[1], c[1], d[1]}, Lanes{a[2], b[2], c[2], d[2]}};
-}
-
-template <bool edges>
-TAUT_ALWAYS_INLINE Shapes shapes_at(const PairCorners* pairs, const Vec3* x) {
-  const Lanes3 a = corner(pairs, 0, x), b = corner(pairs, 1, x), c = corner(pairs, 2, x), d = corner(pairs, 3, x);
+template <bool edges, class T>
+TAUT_ALWAYS_INLINE Shapes<T> shapes_of(const Lanes3<T>& a, const Lanes3<T>& b, const Lanes3<T>& c, const Lanes3<T>& d) {
   if constexpr (edges) return {a - c, b - a, d - c};
   return {a - b, c - b, d - b};
 }
 
-template <bool edges>
-struct Planes {
-  const Shapes &start, &end;
-  Lanes3 size;  // sum of the magnitudes of all differences, at both ends: NaN where one of them is
-  double distance;
-  LaneMask at_start{}, throughout{};
+// The corners of as many pairs as there are lanes, at both ends.
+struct DoublePositions {
+  using Scalar = double;
+  const Vec3 *x0, *x1;
 
-  // The least of n·(point of the first shape - point of the second).
-  TAUT_ALWAYS_INLINE static Lanes least(const Lanes3& n, const Shapes& s) {
-    const Lanes first = dot(n, s.first), second = dot(n, s.second), zero{};
-    if constexpr (edges) return dot(n, s.between) + smaller(first, zero) - larger(second, zero);
-    return dot(n, s.between) - larger(larger(first, second), zero);
+  TAUT_ALWAYS_INLINE static Lanes3<double> corner(const PairCorners* pairs, int k, const Vec3* x) {
+    const double *a = x[pairs[0][k]].data(), *b = x[pairs[1][k]].data(), *c = x[pairs[2][k]].data(), *d = x[pairs[3][k]].data();
+    return {DoubleLanes{a[0], b[0], c[0], d[0]}, DoubleLanes{a[1], b[1], c[1], d[1]}, DoubleLanes{a[2], b[2], c[2], d[2]}};
   }
-  TAUT_ALWAYS_INLINE void attempt(const Lanes3& n) {
-    const Lanes square = dot(n, n), kept = distance * root(square);
-    const Lanes needed = kept + rounding_bound * (dot(absolute(n), size) + kept) + underflow_bound;
-    const LaneMask now = (square > least_square) & (least(n, start) > needed);
-    at_start |= now;
-    throughout |= now & (least(n, end) > needed);
-  }
-  TAUT_ALWAYS_INLINE void attempt_towards(const Lanes3& n, const Lanes3& side) {
-    const Lanes along = dot(n, side), one = {1.0, 1.0, 1.0, 1.0};
-    attempt((along < 0.0 ? -one : one) * n);
+  TAUT_ALWAYS_INLINE void corners(const PairCorners* pairs, int k, Lanes3<double>& start, Lanes3<double>& end) const {
+    start = corner(pairs, k, x0);
+    end = corner(pairs, k, x1);
   }
 };
 
-template <bool edges>
-TAUT_ALWAYS_INLINE void find_clear_four(const PairCorners* pairs, const Vec3* x0, const Vec3* x1, double distance, std::uint8_t* clear) {
-  const Shapes start = shapes_at<edges>(pairs, x0), end = shapes_at<edges>(pairs, x1);
-  const Lanes3 size = absolute(start.between) + absolute(start.first) + absolute(start.second) + absolute(end.between) +
-                      absolute(end.first) + absolute(end.second);
-  Planes<edges> planes{start, end, size, distance};
+struct FloatPositions {
+  using Scalar = float;
+  const FloatWay* way;
+
+  TAUT_ALWAYS_INLINE FloatLanes of(Index vertex) const {
+    FloatLanes v;
+    __builtin_memcpy(&v, &way[vertex], sizeof v);
+    return v;
+  }
+  // Transposes eight vertices of eight floats.
+  TAUT_ALWAYS_INLINE void corners(const PairCorners* pairs, int k, Lanes3<float>& start, Lanes3<float>& end) const {
+    FloatLanes low[4], high[4];  // x and y, z and nothing, of two vertices each that are four apart
+    for (int i = 0; i < 4; ++i) {
+      const FloatLanes a = of(pairs[i][k]), b = of(pairs[i + 4][k]);
+      low[i] = __builtin_shufflevector(a, b, 0, 1, 2, 3, 8, 9, 10, 11);
+      high[i] = __builtin_shufflevector(a, b, 4, 5, 6, 7, 12, 13, 14, 15);
+    }
+    transpose(low, start);
+    transpose(high, end);
+  }
+  TAUT_ALWAYS_INLINE static void transpose(const FloatLanes* v, Lanes3<float>& to) {
+    const FloatLanes xy01 = __builtin_shufflevector(v[0], v[1], 0, 8, 1, 9, 4, 12, 5, 13);
+    const FloatLanes xy23 = __builtin_shufflevector(v[2], v[3], 0, 8, 1, 9, 4, 12, 5, 13);
+    const FloatLanes z01 = __builtin_shufflevector(v[0], v[1], 2, 10, 3, 11, 6, 14, 7, 15);
+    const FloatLanes z23 = __builtin_shufflevector(v[2], v[3], 2, 10, 3, 11, 6, 14, 7, 15);
+    to.x = __builtin_shufflevector(xy01, xy23, 0, 1, 8, 9, 4, 5, 12, 13);
+    to.y = __builtin_shufflevector(xy01, xy23, 2, 3, 10, 11, 6, 7, 14, 15);
+    to.z = __builtin_shufflevector(z01, z23, 0, 1, 8, 9, 4, 5, 12, 13);
+  }
+};
+
+template <bool edges, class T>
+struct Planes {
+  const Shapes<T>&start, &end;
+  Lanes3<T> size;  // sum of the magnitudes of all differences, at both ends: NaN where one of them is
+  T distance;
+  LaneMask<T> at_start{}, throughout{};
+
+  // The least of n·(point of the first shape - point of the second).
+  TAUT_ALWAYS_INLINE static Lanes<T> least(const Lanes3<T>& n, const Shapes<T>& s) {
+    const Lanes<T> first = dot(n, s.first), second = dot(n, s.second), zero{};
+    if constexpr (edges) return dot(n, s.between) + smaller<T>(first, zero) - larger<T>(second, zero);
+    return dot(n, s.between) - larger<T>(larger<T>(first, second), zero);
+  }
+  TAUT_ALWAYS_INLINE void attempt(const Lanes3<T>& n) {
+    constexpr T bound = rounding_bound * Precision<T>::u;
+    const Lanes<T> square = dot(n, n), kept = distance * root(square);
+    const Lanes<T> needed = kept + bound * (dot(absolute(n), size) + kept) + Precision<T>::underflow_bound;
+    const LaneMask<T> now = (square > Precision<T>::least_square) & (least(n, start) > needed);
+    at_start |= now;
+    throughout |= now & (least(n, end) > needed);
+  }
+  TAUT_ALWAYS_INLINE void attempt_towards(const Lanes3<T>& n, const Lanes3<T>& side) {
+    const LaneMask<T> flip = (LaneMask<T>)dot(n, side) & sign_bit<T>();
+    const auto towards = [&](const Lanes<T>& a) __attribute__((always_inline)) { return (Lanes<T>)((LaneMask<T>)a ^ flip); };
+    attempt({towards(n.x), towards(n.y), towards(n.z)});
+  }
+};
+
+// Of as many pairs as there are lanes.
+template <bool edges, class Positions>
+TAUT_ALWAYS_INLINE void find_clear_few(const PairCorners* pairs, const Positions& positions, typename Positions::Scalar distance,
+                                       std::uint8_t* clear) {
+  using T = typename Positions::Scalar;
+  Lanes3<T> x0[4], x1[4];
+  for (int k = 0; k < 4; ++k) positions.corners(pairs, k, x0[k], x1[k]);
+  const Shapes<T> start = shapes_of<edges>(x0[0], x0[1], x0[2], x0[3]), end = shapes_of<edges>(x1[0], x1[1], x1[2], x1[3]);
+  const Lanes3<T> size = absolute(start.between) + absolute(start.first) + absolute(start.second) + absolute(end.between) +
+                         absolute(end.first) + absolute(end.second);
+  Planes<edges, T> planes{start, end, size, distance};
   // Twice the mean.
-  const Lanes3 between = start.between + end.between, first = start.first + end.first, second = start.second + end.second;
+  const Lanes3<T> between = start.between + end.between, first = start.first + end.first, second = start.second + end.second;
   if constexpr (edges) {
-    const Lanes half = {0.5, 0.5, 0.5, 0.5};
-    const Lanes3 middle = between + half * (first - second);
+    const Lanes<T> half = Lanes<T>{} + T(0.5);
+    const Lanes3<T> middle = between + half * (first - second);
     planes.attempt(middle);
     planes.attempt(orthogonal(middle, first));
     planes.attempt(orthogonal(middle, second));
     planes.attempt_towards(cross(first, second), middle);
   } else {
-    const Lanes three = {3.0, 3.0, 3.0, 3.0};
+    const Lanes<T> three = Lanes<T>{} + T(3);
     planes.attempt(three * between - (first + second));
     planes.attempt(orthogonal(between, first));
     planes.attempt(orthogonal(between, second));
     planes.attempt(orthogonal(between - first, second - first));
     planes.attempt_towards(cross(first, second), between);
   }
-  for (int l = 0; l < lanes; ++l)
+  for (int l = 0; l < lanes<T>; ++l)
     clear[l] = static_cast<std::uint8_t>((planes.at_start[l] ? clear_at_start : 0) | (planes.throughout[l] ? clear_throughout : 0));
 }
 
-template <bool edges>
-TAUT_ALWAYS_INLINE void find_all(const PairCorners* pairs, Index count, const Vec3* x0, const Vec3* x1, double distance,
+template <bool edges, class Positions>
+TAUT_ALWAYS_INLINE void find_all(const PairCorners* pairs, Index count, const Positions& positions, typename Positions::Scalar distance,
                                  std::uint8_t* clear) {
+  constexpr Index few = lanes<typename Positions::Scalar>;
   Index k = 0;
-  for (; k + lanes <= count; k += lanes) find_clear_four<edges>(pairs + k, x0, x1, distance, clear + k);
+  for (; k + few <= count; k += few) find_clear_few<edges>(pairs + k, positions, distance, clear + k);
   if (k == count) return;
-  PairCorners last[lanes];
-  std::uint8_t flags[lanes];
-  for (Index l = 0; l < lanes; ++l) last[l] = pairs[std::min(k + l, count - 1)];
-  find_clear_four<edges>(last, x0, x1, distance, flags);
+  PairCorners last[few];
+  std::uint8_t flags[few];
+  for (Index l = 0; l < few; ++l) last[l] = pairs[std::min(k + l, count - 1)];
+  find_clear_few<edges>(last, positions, distance, flags);
   std::copy(flags, flags + (count - k), clear + k);
 }
 
@@ -128,16 +225,74 @@ TAUT_ALWAYS_INLINE void find_all(const PairCorners* pairs, Index count, const Ve
 
 TAUT_MULTIVERSION void find_clear_edges(const PairCorners* pairs, Index count, const Vec3* x0, const Vec3* x1, double distance,
                                         std::uint8_t* clear) {
-  find_all<true>(pairs, count, x0, x1, distance, clear);
+  find_all<true>(pairs, count, DoublePositions{x0, x1}, distance, clear);
 }
 
 TAUT_MULTIVERSION void find_clear_triangles(const PairCorners* pairs, Index count, const Vec3* x0, const Vec3* x1, double distance,
                                             std::uint8_t* clear) {
-  find_all<false>(pairs, count, x0, x1, distance, clear);
+  find_all<false>(pairs, count, DoublePositions{x0, x1}, distance, clear);
+}
+
+// Not for AVX-512, where GCC 12 fails on comparisons of eight floats ("internal compiler error"); longer vectors are not needed.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define TAUT_MULTIVERSION_AVX2 __attribute__((target_clones("arch=x86-64-v3", "default"), optimize("fp-contract=fast")))
+#else
+#define TAUT_MULTIVERSION_AVX2
+#endif
+
+TAUT_MULTIVERSION_AVX2 void find_clear_edges(const PairCorners* pairs, Index count, const FloatWay* ways, float distance, std::uint8_t* clear) {
+  find_all<true>(pairs, count, FloatPositions{ways}, distance, clear);
+}
+
+TAUT_MULTIVERSION_AVX2 void find_clear_triangles(const PairCorners* pairs, Index count, const FloatWay* ways, float distance,
+                                            std::uint8_t* clear) {
+  find_all<false>(pairs, count, FloatPositions{ways}, distance, clear);
 }
 
 void find_clear(const PairCorners* pairs, Index count, bool edges, const Vec3* x0, const Vec3* x1, double distance, std::uint8_t* clear) {
-  (edges ? find_clear_edges : find_clear_triangles)(pairs, count, x0, x1, distance, clear);
+  edges ? find_clear_edges(pairs, count, x0, x1, distance, clear) : find_clear_triangles(pairs, count, x0, x1, distance, clear);
+}
+
+namespace {
+
+// Of all finite positions.
+struct Range {
+  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  void add(const Vec3& x) {
+    if (x.allFinite()) low = low.cwiseMin(x), high = high.cwiseMax(x);
+  }
+  Range& operator+=(const Range& other) {
+    low = low.cwiseMin(other.low), high = high.cwiseMax(other.high);
+    return *this;
+  }
+};
+
+}  // namespace
+
+void FloatWays::set(std::span<const Vec3> x0, std::span<const Vec3> x1) {
+  ways_.resize(x0.size());
+  const Range range = ordered_sum<Range>(static_cast<Index>(x0.size()), [&](Index begin, Index end) {
+    Range part;
+    for (Index v = begin; v < end; ++v) part.add(x0[v]), part.add(x1[v]);
+    return part;
+  });
+  const Vec3 origin = 0.5 * range.low + 0.5 * range.high;
+  // Both points of a pair may be off by this along each axis.
+  coordinate_error_ = Precision<float>::u * (0.5 * range.high - 0.5 * range.low).maxCoeff();
+  parallel_for(static_cast<Index>(x0.size()), 4096, [&](Index begin, Index end) {
+    for (Index v = begin; v < end; ++v)
+      for (int i = 0; i < 3; ++i) {
+        ways_[v].at[0][i] = static_cast<float>(x0[v][i] - origin[i]);
+        ways_[v].at[1][i] = static_cast<float>(x1[v][i] - origin[i]);
+      }
+  });
+}
+
+void FloatWays::find_clear(const PairCorners* pairs, Index count, bool edges, double distance, std::uint8_t* clear) const {
+  // 2 sqrt(3) < 4; the rest is for rounding here.
+  const double enough = (distance + 4.0 * coordinate_error_) * (1.0 + 8.0 * Precision<float>::u);
+  const float wanted = static_cast<float>(enough);
+  edges ? find_clear_edges(pairs, count, ways_.data(), wanted, clear) : find_clear_triangles(pairs, count, ways_.data(), wanted, clear);
 }
 
 }  // namespace taut::detail

@@ -10,10 +10,12 @@
 // the shapes at the start, or at both ends: and then, since all motion is linear, all the way. Rounding is bounded as in contact/ccd.h:
 // what is called clear is proved; the reverse does not hold. Numbers that are not finite are not clear.
 //
-// Four pairs side by side, each by itself: the result does not depend on which come together. Private to contact.
+// Several pairs side by side, each by itself: the result does not depend on which come together. Private to contact.
 
 #include <array>
 #include <cstdint>
+#include <span>
+#include <vector>
 
 #include "taut/base/types.h"
 
@@ -25,5 +27,22 @@ constexpr std::uint8_t clear_at_start = 1, clear_throughout = 2;
 
 // clear[k]: the flags of pair k. x0, x1: m, of all vertices, at the start and at the end.
 void find_clear(const PairCorners* pairs, Index count, bool edges, const Vec3* x0, const Vec3* x1, double distance, std::uint8_t* clear);
+
+// The same in single precision, at twice the speed, and as sure: what the coordinates lose is added to the distance (docs/mathematics.md,
+// 6.8). Finds nearly as many pairs clear, where the scene is not a million times larger than the distance.
+struct alignas(32) FloatWay {
+  float at[2][4] = {};  // m, from the middle of all: x, y, z at the start and at the end, and one unused
+};
+
+class FloatWays {
+ public:
+  // Of all vertices; x0, x1: as above.
+  void set(std::span<const Vec3> x0, std::span<const Vec3> x1);
+  void find_clear(const PairCorners* pairs, Index count, bool edges, double distance, std::uint8_t* clear) const;
+
+ private:
+  std::vector<FloatWay> ways_;
+  double coordinate_error_ = 0.0;  // m
+};
 
 }  // namespace taut::detail
