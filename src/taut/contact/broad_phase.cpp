@@ -1,6 +1,7 @@
 #include "taut/contact/broad_phase.h"
 
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -78,6 +79,15 @@ void BroadPhase::refit(std::span<const Vec3> x0, std::span<const Vec3> x1, doubl
     }
   });
   for (BoxTree* tree : {&trees.vertices, &trees.edges, &trees.triangles}) tree->refit(trees.boxes, still);
+}
+
+void BroadPhase::refit_moved(std::span<const Vec3> x0, std::span<const Vec3> x1, double margin, std::span<const std::uint8_t> moved) {
+  Trees& trees = *trees_;
+  assert(x0.data() != x1.data());
+  if (trees.vertices.still()) return refit(x0, x1, margin);
+  for (Index v = 0; v < surface_->vertices; ++v)
+    if (moved[v]) trees.boxes[v] = {{box_around(x0[v], 0.5 * margin), box_around(x1[v], 0.5 * margin)}};
+  for (BoxTree* tree : {&trees.vertices, &trees.edges, &trees.triangles}) tree->refit_moved(trees.boxes, moved);
 }
 
 void BroadPhase::find_vertex_triangle(std::vector<VertexTriangle>& pairs, std::span<const std::uint8_t> moved) {

@@ -48,6 +48,8 @@ class BroadPhase {
   // Sets all boxes for a step from x0 to x1 (m, one a vertex each; the same span twice for a shape at rest). margin >= 0, m.
   // A vertex that is not finite gets a box around everything.
   void refit(std::span<const Vec3> x0, std::span<const Vec3> x1, double margin);
+  // The same, where since the last refit only vertices marked in `moved` have got another way, with the same margin.
+  void refit_moved(std::span<const Vec3> x0, std::span<const Vec3> x1, double margin, std::span<const std::uint8_t> moved);
 
   // Replace `pairs`. moved: empty for all pairs, or one byte a vertex, not 0 where it moved.
   void find_vertex_triangle(std::vector<VertexTriangle>& pairs, std::span<const std::uint8_t> moved = {});

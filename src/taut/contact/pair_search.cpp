@@ -44,7 +44,11 @@ void PairSearch::keep_candidates(const std::vector<Pair>& pairs, Candidates& can
 }
 
 void PairSearch::add_candidates(std::span<const Vec3> x0, std::span<const std::uint8_t> moved, std::vector<CollisionPair>* close) {
-  broad_phase_.refit(x0, end_, reach_);
+  if (moved.empty()) {
+    broad_phase_.refit(x0, end_, reach_);
+  } else {
+    broad_phase_.refit_moved(x0, end_, reach_, moved);
+  }
   ways_.set(x0, end_);
   broad_phase_.find_vertex_triangle(vertex_triangle_, moved);
   broad_phase_.find_edge_edge(edge_edge_, moved);

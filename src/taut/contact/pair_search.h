@@ -9,7 +9,7 @@
 //   slack = (reach - separation)/2
 //
 // of where it was, two points are nearer than before by 2 slack at most, so that whatever comes within `separation` is still a candidate.
-// Pairs of nodes that went further are looked for anew.
+// Pairs of nodes that went further are looked for anew. In between, the broad phase must not be used for anything else but shapes at rest.
 
 #include <functional>
 

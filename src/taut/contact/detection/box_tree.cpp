@@ -1,5 +1,6 @@
 #include "taut/contact/detection/box_tree.h"
 
+#include <bit>
 #include <limits>
 #include <numeric>
 
@@ -105,9 +106,10 @@ LevelMasks BoxTree::any_moved(std::span<const std::uint8_t> moved) const {
       false);
 }
 
-void BoxTree::fit_items(Index g, int t, std::span<const MovingBox> vertices) {
+void BoxTree::fit_items(Index g, Mask lanes, int t, std::span<const MovingBox> vertices) {
   BoxGroup& group = levels_[0][g];
-  for (Index l = 0; l < lanes_used(0, g); ++l) {
+  for (; lanes != 0; lanes &= lanes - 1) {
+    const int l = std::countr_zero(lanes);
     const Index* of_item = corners(8 * g + l);
     Box box = vertices[of_item[0]].at[t];
     for (int k = 1; k < corners_per_item_; ++k) {
@@ -124,9 +126,10 @@ void BoxTree::fit_items(Index g, int t, std::span<const MovingBox> vertices) {
   }
 }
 
-void BoxTree::fit_children(int level, Index g, int t) {
+void BoxTree::fit_children(int level, Index g, Mask lanes, int t) {
   BoxGroup& group = levels_[level][g];
-  for (Index l = 0; l < lanes_used(level, g); ++l) {
+  for (; lanes != 0; lanes &= lanes - 1) {
+    const int l = std::countr_zero(lanes);
     const Index below = 8 * g + l;
     const BoxGroup& child = levels_[level - 1][below];
     for (int i = 0; i < 3; ++i) {
@@ -141,14 +144,29 @@ void BoxTree::fit_children(int level, Index g, int t) {
   }
 }
 
+// The lanes lanes_of(level, g) of each group.
+template <class LanesOf>
+void BoxTree::fit(std::span<const MovingBox> vertices, const LanesOf& lanes_of) {
+  for (int level = 0; level < height(); ++level)
+    parallel_for(static_cast<Index>(levels_[level].size()), refit_grain, [&](Index begin, Index end) {
+      for (Index g = begin; g < end; ++g) {
+        const Mask lanes = lanes_of(level, g);
+        if (lanes == 0) continue;
+        for (int t = 0; t < (still_ ? 1 : 2); ++t) level == 0 ? fit_items(g, lanes, t, vertices) : fit_children(level, g, lanes, t);
+      }
+    });
+}
+
 void BoxTree::refit(std::span<const MovingBox> vertices, bool still) {
   still_ = still;
   if (items() == 0) return;
-  for (int level = 0; level < height(); ++level)
-    parallel_for(static_cast<Index>(levels_[level].size()), refit_grain, [&](Index begin, Index end) {
-      for (Index g = begin; g < end; ++g)
-        for (int t = 0; t < (still ? 1 : 2); ++t) level == 0 ? fit_items(g, t, vertices) : fit_children(level, g, t);
-    });
+  fit(vertices, [&](int level, Index g) { return (1u << lanes_used(level, g)) - 1; });
+}
+
+void BoxTree::refit_moved(std::span<const MovingBox> vertices, std::span<const std::uint8_t> moved) {
+  if (items() == 0) return;
+  const LevelMasks lanes = any_moved(moved);
+  fit(vertices, [&](int level, Index g) { return Mask{lanes[static_cast<std::size_t>(level)][static_cast<std::size_t>(g)]}; });
 }
 
 }  // namespace taut::detail

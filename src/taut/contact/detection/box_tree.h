@@ -78,19 +78,11 @@ struct alignas(32) CornerGroup {
   Index corner[8];
 };
 
-// The lanes that hold vertex v.
-inline Mask holding(const CornerGroup& group, Index v) {
-#if defined(__SSE2__)
-  const __m128i wanted = _mm_set1_epi32(v);
-  const __m128i low = _mm_cmpeq_epi32(_mm_load_si128(reinterpret_cast<const __m128i*>(group.corner)), wanted);
-  const __m128i high = _mm_cmpeq_epi32(_mm_load_si128(reinterpret_cast<const __m128i*>(group.corner + 4)), wanted);
-  return static_cast<Mask>(_mm_movemask_ps(_mm_castsi128_ps(low))) | static_cast<Mask>(_mm_movemask_ps(_mm_castsi128_ps(high))) << 4;
-#else
-  Mask mask = 0;
-  for (int l = 0; l < 8; ++l) mask |= static_cast<Mask>(group.corner[l] == v) << l;
-  return mask;
-#endif
-}
+// Eight items: their boxes, and one CornerGroup a corner.
+struct LeafGroup {
+  const BoxGroup* boxes;
+  const CornerGroup* corners;
+};
 
 inline MovingBox box_of_lane(const BoxGroup& group, int lane) {
   MovingBox box;
@@ -112,6 +104,8 @@ class BoxTree {
 
   // Boxes of all vertices, from which those of the items are made. still: only at the start, the end is the same.
   void refit(std::span<const MovingBox> vertices, bool still);
+  // The same where only these vertices' boxes have changed: one byte a vertex.
+  void refit_moved(std::span<const MovingBox> vertices, std::span<const std::uint8_t> moved);
   bool still() const { return still_; }
 
   // Lanes with an item that has a corner marked in `moved`, one byte a vertex.
@@ -124,8 +118,8 @@ class BoxTree {
   // Lanes with nothing but solids.
   Mask solid(int level, Index g) const { return solid_[static_cast<std::size_t>(level)][static_cast<std::size_t>(g)]; }
   Index item(Index slot) const { return order_[static_cast<std::size_t>(slot)]; }
-  // Corner k of the items of group g of level 0.
-  const CornerGroup& corner_group(Index g, int k) const { return corner_groups_[static_cast<std::size_t>(g * corners_per_item_ + k)]; }
+  // Boxes and corners of group g of level 0.
+  LeafGroup leaf(Index g) const { return {&levels_[0][static_cast<std::size_t>(g)], &corner_groups_[static_cast<std::size_t>(g * corners_per_item_)]}; }
   // Of the item in a slot.
   const Index* corners(Index slot) const {
     return corners_.data() + static_cast<std::size_t>(slot) * static_cast<std::size_t>(corners_per_item_);
@@ -138,8 +132,10 @@ class BoxTree {
  private:
   template <class OfItem>
   LevelMasks masks(const OfItem& of_item, bool all) const;
-  void fit_items(Index g, int t, std::span<const MovingBox> vertices);
-  void fit_children(int level, Index g, int t);
+  void fit_items(Index g, Mask lanes, int t, std::span<const MovingBox> vertices);
+  void fit_children(int level, Index g, Mask lanes, int t);
+  template <class LanesOf>
+  void fit(std::span<const MovingBox> vertices, const LanesOf& lanes_of);
 
   int corners_per_item_;
   bool still_ = false;

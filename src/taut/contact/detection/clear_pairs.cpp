@@ -233,13 +233,6 @@ TAUT_MULTIVERSION void find_clear_triangles(const PairCorners* pairs, Index coun
   find_all<false>(pairs, count, DoublePositions{x0, x1}, distance, clear);
 }
 
-// Not for AVX-512, where GCC 12 fails on comparisons of eight floats ("internal compiler error"); longer vectors are not needed.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define TAUT_MULTIVERSION_AVX2 __attribute__((target_clones("arch=x86-64-v3", "default"), optimize("fp-contract=fast")))
-#else
-#define TAUT_MULTIVERSION_AVX2
-#endif
-
 TAUT_MULTIVERSION_AVX2 void find_clear_edges(const PairCorners* pairs, Index count, const FloatWay* ways, float distance, std::uint8_t* clear) {
   find_all<true>(pairs, count, FloatPositions{ways}, distance, clear);
 }

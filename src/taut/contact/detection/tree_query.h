@@ -9,6 +9,7 @@
 
 #include "taut/base/parallel.h"
 #include "taut/contact/detection/box_tree.h"
+#include "taut/contact/detection/leaf_overlaps.h"
 
 namespace taut::detail {
 
@@ -35,6 +36,7 @@ class TreeQuery {
   void run(Index q, std::vector<Pair>& pairs) const {
     const bool all_solid = first_.solid(1, q / 8) >> (q % 8) & 1;
     const bool none_moved = restricted() && moved_first_[0][q] == 0;
+    if (none_moved && itself_) return;
     const MovingBox around = box_of_lane(first_.group(1, q / 8), q % 8);
     struct Visit {
       int level;
@@ -48,7 +50,7 @@ class TreeQuery {
       Mask mask = overlapping(second_.group(visit.level, visit.group), around, still_);
       if (all_solid) mask &= ~second_.solid(visit.level, visit.group);
       if (none_moved) mask &= moved_second_[visit.level][visit.group];
-      if (itself_) {
+      if (itself_ && !restricted()) {
         // Groups before q met q on their own way.
         const Index from = (q >> (3 * (visit.level - 1))) - 8 * visit.group;
         if (from > 0) mask &= from < 8 ? ~0u << from : 0u;
@@ -71,27 +73,22 @@ class TreeQuery {
 
   // Those items in the given lanes of group q with the items of group g of the second tree.
   void meet(Index q, Index g, Mask lanes, std::vector<Pair>& pairs) const {
-    const BoxGroup& mine = first_.group(0, q);
-    const BoxGroup& theirs = second_.group(0, g);
+    if (itself_ && restricted()) lanes &= moved_first_[0][q];  // pairs with another lane are found from their other item
+    std::array<std::uint8_t, 8> masks;
+    leaf_overlaps<first_corners, second_corners>(first_.leaf(q), second_.leaf(g), lanes, still_, masks.data());
     for (; lanes != 0; lanes &= lanes - 1) {
       const int lane = std::countr_zero(lanes);
-      Mask mask = overlapping(theirs, box_of_lane(mine, lane), still_);
-      if (itself_ && q == g) mask &= ~1u << lane;
+      Mask mask = masks[lane];
+      if (itself_) {
+        const Mask after = q < g ? ~0u : q == g ? ~1u << lane : 0u;
+        mask &= restricted() ? after | ~moved_second_[0][g] : after;
+      } else if (restricted() && !(moved_first_[0][q] >> lane & 1)) {
+        mask &= moved_second_[0][g];
+      }
       if (first_.solid(0, q) >> lane & 1) mask &= ~second_.solid(0, g);
-      if (restricted() && !(moved_first_[0][q] >> lane & 1)) mask &= moved_second_[0][g];
-      if (mask == 0) continue;
       const Index slot = 8 * q + lane;
-      mask &= ~sharing_corner(first_.corners(slot), g);
       for (; mask != 0; mask &= mask - 1) pairs.push_back(make_pair_(first_.item(slot), second_.item(8 * g + std::countr_zero(mask))));
     }
-  }
-
-  // The lanes of group g of the second tree that have one of these corners.
-  Mask sharing_corner(const Index* corners, Index g) const {
-    Mask mask = 0;
-    for (int k = 0; k < second_corners; ++k)
-      for (int i = 0; i < first_corners; ++i) mask |= holding(second_.corner_group(g, k), corners[i]);
-    return mask;
   }
 
   const BoxTree& first_;
