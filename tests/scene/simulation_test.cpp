@@ -121,7 +121,7 @@ TEST(Simulation, GoesOnFromACheckpointToTheSameBits) {
         EXPECT_GE(whole.contact().contacts(), k < 10 ? 0 : 5);
         std::ostringstream out;
         write(out, Checkpoint{scene_to_toml(scene), whole.steps_done(), 3, whole.state(), whole.contact().state(),
-                              whole.stepper().solver().memory(), whole.surface_contact()->state()});
+                              whole.stepper().solver().memory(), whole.surface_contact()->state(), {}});
         bytes = out.str();
       }
       ASSERT_TRUE(whole.step(record).ok());
