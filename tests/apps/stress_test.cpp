@@ -74,5 +74,22 @@ TEST(StressVerb, TheJudgeSeesEveryFrameAndIsBelieved) {
   EXPECT_NE(nobody.err.find("nobody"), std::string::npos) << nobody.err;
 }
 
+TEST(StressVerb, NothingToRunIsAnError) {
+  const WorkFolder folder;
+  const auto refusal = [&](const std::vector<std::string>& arguments) {
+    const ProgramEnd end = stress(folder, arguments);
+    EXPECT_EQ(end.exit_code, 1) << end.out;
+    return end.err;
+  };
+  EXPECT_NE(refusal({}).find("no clump.toml in ."), std::string::npos);
+  EXPECT_NE(refusal({"--scene", "clumb"}).find("clump, stack, twist"), std::string::npos);
+  folder.file("clump.toml", "[[cloth]]\n");
+  EXPECT_NE(refusal({}).find("clump.toml"), std::string::npos);
+  std::filesystem::remove(folder / "clump.toml");
+  const ProgramEnd none = taut(folder, {"bench", "contact", "--stress", "1", "--scenes", "."});
+  EXPECT_EQ(none.exit_code, 1) << none.out;
+  EXPECT_NE(none.err.find("has none of the contact scenes"), std::string::npos) << none.err;
+}
+
 }  // namespace
 }  // namespace taut::test

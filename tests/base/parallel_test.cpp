@@ -11,6 +11,8 @@
 #include <stdexcept>
 #include <thread>
 
+#include "taut/base/collect.h"
+
 namespace taut::test {
 namespace {
 
@@ -128,6 +130,27 @@ TEST_F(Parallel, SeveralThreadsReallyWork) {
       while (!met() && Clock::now() < limit) std::this_thread::yield();
     });
     EXPECT_EQ(static_cast<int>(workers.size()), threads);
+  }
+}
+
+TEST_F(Parallel, CollectedListsAreInOrder) {
+  for (const int threads : {1, 2, 4}) {
+    set_thread_count(threads);
+    for (const Index n : {0, 1, 99, 100, 101, 12'345}) {
+      std::vector<Index> thirds{-1}, begins;
+      collect(
+          n, 100,
+          [](Index begin, Index end, std::vector<Index>& third, std::vector<Index>& first) {
+            first.push_back(begin);
+            for (Index i = begin; i < end; ++i)
+              if (i % 3 == 0) third.push_back(i);
+          },
+          thirds, begins);
+      ASSERT_EQ(std::ssize(thirds), 1 + (n + 2) / 3) << "what was in the list stays";
+      for (Index k = 1; k < std::ssize(thirds); ++k) ASSERT_EQ(thirds[k], 3 * (k - 1));
+      ASSERT_EQ(std::ssize(begins), (n + 99) / 100);
+      for (Index k = 0; k < std::ssize(begins); ++k) ASSERT_EQ(begins[k], 100 * k);
+    }
   }
 }
 

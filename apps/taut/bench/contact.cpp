@@ -3,6 +3,7 @@
 // with --judge in any frame, by another program.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -118,7 +119,8 @@ class FrameJudge {
     const ChildEnd end =
         run_child({program_, "--solid-from", std::to_string(simulation.cloth().nodes()), file.string()}, std::chrono::minutes(5));
     std::filesystem::remove(file);
-    if (end.outcome == ChildEnd::Outcome::not_found) throw InputError(fmt::format("there is no program '{}'; give --judge another", program_));
+    if (end.outcome == ChildEnd::Outcome::not_found)
+      throw InputError(fmt::format("there is no program '{}'; give --judge another", program_));
     if (end.outcome != ChildEnd::Outcome::exited || end.code > 1)
       throw InputError(fmt::format("the judge {} could not judge a frame: {}", program_, end.errors));
     ++trial.judged;
@@ -129,11 +131,12 @@ class FrameJudge {
   std::string program_;
 };
 
-// The scene, unless what it needs is not there (the meshes of `body`).
+// The scene; of all scenes, not one whose files are not there (the meshes of `body`).
 std::optional<Scene> readable_scene(const std::string& scene, const BenchOptions& options) {
   try {
     return read_scene(fmt::format("{}/{}.toml", options.scenes, scene));
   } catch (const InputError& error) {
+    if (!options.methods.empty()) throw;
     fmt::print("{:<16} not run: {}\n", scene, error.what());
     return {};
   }
@@ -173,11 +176,28 @@ Trial run_trial(Scene read, const BenchOptions& options, int seed) {
   return trial;
 }
 
+// Those asked for, or all that are in the folder: at least one.
+std::vector<std::string> scenes_to_stress(const BenchOptions& options) {
+  for (const std::string& name : options.methods)
+    if (!std::ranges::count(contact_scenes, name))
+      throw InputError(fmt::format("--scene: '{}' is none of the contact scenes: {}", name, fmt::join(contact_scenes, ", ")));
+  std::vector<std::string> scenes;
+  for (const char* scene : contact_scenes) {
+    const bool asked = std::ranges::count(options.methods, scene) > 0;
+    if (!options.methods.empty() && !asked) continue;
+    const bool there = std::filesystem::exists(fmt::format("{}/{}.toml", options.scenes, scene));
+    if (asked && !there)
+      throw InputError(fmt::format("--scene: there is no {}.toml in {}; give its folder with --scenes", scene, options.scenes));
+    if (there) scenes.push_back(scene);
+  }
+  if (scenes.empty())
+    throw InputError(fmt::format("--scenes: {} has none of the contact scenes: {}", options.scenes, fmt::join(contact_scenes, ", ")));
+  return scenes;
+}
+
 Json stress(const BenchOptions& options) {
   Json rows = Json::array();
-  for (const char* scene : contact_scenes) {
-    if (!options.methods.empty() && !std::ranges::count(options.methods, scene)) continue;
-    if (!std::filesystem::exists(fmt::format("{}/{}.toml", options.scenes, scene))) continue;
+  for (const std::string& scene : scenes_to_stress(options)) {
     const std::optional<Scene> read = readable_scene(scene, options);
     if (!read) continue;
     for (int seed = 0; seed <= options.stress; ++seed) {

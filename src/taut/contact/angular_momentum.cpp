@@ -5,7 +5,7 @@
 #include <cassert>
 #include <numeric>
 
-#include "taut/base/parallel.h"
+#include "taut/base/collect.h"
 
 namespace taut {
 
@@ -14,8 +14,7 @@ namespace {
 bool has_pushed(const ContactRow& row) { return row.pushed != Vec3::Zero(); }
 bool touches_solid(const ContactRow& row) { return row.node[1] < 0; }
 
-// Rows that matter here: those that have pushed and those that touch a solid. In their order; few of many bytes each, so that they are
-// looked at once only.
+// A row that has pushed or touches a solid, which few do. Kept apart, since a row has many bytes and these are looked at several times.
 struct Push {
   Index row;
   std::array<Index, 4> node;
@@ -23,15 +22,14 @@ struct Push {
 
 std::vector<Push> pushes_of(std::span<const ContactRow> rows) {
   constexpr Index rows_per_task = 2048;
-  const Index count = static_cast<Index>(rows.size()), tasks = (count + rows_per_task - 1) / rows_per_task;
-  std::vector<std::vector<Push>> found(static_cast<std::size_t>(tasks));
-  parallel_for(tasks, 1, [&](Index begin, Index end) {
-    for (Index t = begin; t < end; ++t)
-      for (Index k = t * rows_per_task; k < std::min(count, (t + 1) * rows_per_task); ++k)
-        if (has_pushed(rows[k]) || touches_solid(rows[k])) found[t].push_back({k, rows[k].node});
-  });
   std::vector<Push> pushes;
-  for (const auto& part : found) pushes.insert(pushes.end(), part.begin(), part.end());
+  collect(
+      static_cast<Index>(rows.size()), rows_per_task,
+      [&](Index begin, Index end, std::vector<Push>& found) {
+        for (Index k = begin; k < end; ++k)
+          if (has_pushed(rows[k]) || touches_solid(rows[k])) found.push_back({k, rows[k].node});
+      },
+      pushes);
   return pushes;
 }
 

@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <array>
 
-#include "taut/base/parallel.h"
+#include "taut/base/collect.h"
 #include "taut/contact/detection/clear_pairs.h"
 #include "taut/contact/detection/separating_planes.h"
 #include "taut/contact/proximity.h"
@@ -89,26 +89,21 @@ constexpr Index impact_chunk = 512;
 template <class CornersOf>
 void collect_hits(Index pairs, bool edges, std::span<const Vec3> x0, std::span<const Vec3> x1, const CcdOptions& options,
                   const CornersOf& corners_of, std::vector<PairImpact>& hits) {
-  const Index chunks = (pairs + impact_chunk - 1) / impact_chunk;
-  std::vector<std::vector<PairImpact>> found(static_cast<std::size_t>(chunks));
   const auto decide = edges ? edge_edge_impact : vertex_triangle_impact;
-  parallel_for(chunks, 1, [&](Index begin, Index end) {
+  const auto find = [&](Index begin, Index end, std::vector<PairImpact>& found) {
     std::array<detail::PairCorners, impact_chunk> corners;
     std::array<std::uint8_t, impact_chunk> clear;
-    for (Index c = begin; c < end; ++c) {
-      const Index first = c * impact_chunk, count = std::min(impact_chunk, pairs - first);
-      for (Index k = 0; k < count; ++k) corners[k] = corners_of(first + k);
-      detail::find_clear(corners.data(), count, edges, x0.data(), x1.data(), options.minimum_separation, clear.data());
-      for (Index k = 0; k < count; ++k) {
-        if (clear[k] & detail::clear_throughout) continue;
-        const auto [i, j, l, m] = corners[k];
-        const Impact impact = decide(x0[i], x0[j], x0[l], x0[m], x1[i], x1[j], x1[l], x1[m], options);
-        if (impact.hit) found[c].push_back({first + k, impact.time});
-      }
+    for (Index k = begin; k < end; ++k) corners[k - begin] = corners_of(k);
+    detail::find_clear(corners.data(), end - begin, edges, x0.data(), x1.data(), options.minimum_separation, clear.data());
+    for (Index k = begin; k < end; ++k) {
+      if (clear[k - begin] & detail::clear_throughout) continue;
+      const auto [i, j, l, m] = corners[k - begin];
+      const Impact impact = decide(x0[i], x0[j], x0[l], x0[m], x1[i], x1[j], x1[l], x1[m], options);
+      if (impact.hit) found.push_back({k, impact.time});
     }
-  });
+  };
   hits.clear();
-  for (const auto& list : found) hits.insert(hits.end(), list.begin(), list.end());
+  collect(pairs, impact_chunk, find, hits);
 }
 
 }  // namespace

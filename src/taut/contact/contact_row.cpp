@@ -157,8 +157,7 @@ void satisfy_rows(std::span<ContactRow> rows, const RowSlabs& slabs, std::span<V
                   std::span<std::uint8_t> moved, int iterations, double tolerance) {
   std::array<double, RowSlabs::groups> motion;
   for (int k = 0; k < iterations; ++k) {
-    for_groups(rows, slabs,
-               [&](Index g, std::span<ContactRow> group) { motion[g] = satisfy_group(group, x1, awake, moved, tolerance); });
+    for_groups(rows, slabs, [&](Index g, std::span<ContactRow> group) { motion[g] = satisfy_group(group, x1, awake, moved, tolerance); });
     if (*std::ranges::max_element(motion) <= tolerance) return;
   }
 }

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "taut/base/parallel.h"
+#include "taut/base/collect.h"
 
 namespace taut {
 
@@ -26,15 +26,14 @@ std::vector<Index> starts(std::span<const PairForce> list, Index vertices) {
 }  // namespace
 
 std::vector<PairForce> forces_of(std::span<const ContactRow> rows, double h, Index vertices) {
-  const Index tasks = (static_cast<Index>(rows.size()) + rows_per_task - 1) / rows_per_task;
-  std::vector<std::vector<PairForce>> found(static_cast<std::size_t>(tasks));
-  parallel_for(tasks, 1, [&](Index begin, Index end) {
-    for (Index t = begin; t < end; ++t)
-      for (std::size_t k = static_cast<std::size_t>(t) * rows_per_task; k < std::min<std::size_t>(rows.size(), (t + 1) * rows_per_task); ++k)
-        if (rows[k].lambda > 0.0 && rows[k].node[1] >= 0) found[t].push_back(force_of(rows[k], h));
-  });
   std::vector<PairForce> list;
-  for (const auto& part : found) list.insert(list.end(), part.begin(), part.end());
+  collect(
+      static_cast<Index>(rows.size()), rows_per_task,
+      [&](Index begin, Index end, std::vector<PairForce>& found) {
+        for (Index k = begin; k < end; ++k)
+          if (rows[k].lambda > 0.0 && rows[k].node[1] >= 0) found.push_back(force_of(rows[k], h));
+      },
+      list);
   std::vector<Index> next = starts(list, vertices);
   std::vector<PairForce> ordered(list.size());
   for (const PairForce& entry : list) ordered[next[entry.node[0]]++] = entry;
@@ -53,7 +52,7 @@ Vec3 PairForces::of(const std::array<Index, 4>& node) const {
 void begin_with(ContactRow& row, const Vec3& force, double h) {
   const Vec3 impulse = h * h * force;
   const double along = row.normal.dot(impulse);
-  if (!(along > 0.0) || row.inverse_mass == 0.0) return;
+  if (!(along > 0.0) || !impulse.allFinite() || row.inverse_mass == 0.0) return;
   row.lambda = along;
   row.tangential = impulse - along * row.normal;
   const double size = row.tangential.norm(), limit = row.friction * row.lambda;

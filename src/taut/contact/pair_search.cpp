@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "taut/base/parallel.h"
+#include "taut/base/collect.h"
 
 namespace taut {
 
@@ -19,28 +19,20 @@ bool any_in(const std::array<Index, 4>& nodes, std::span<const std::uint8_t> mar
 
 // Adds those of the broad phase's pairs that come within reach on the way to end_, and to `close` those that may be within it at the start.
 template <class Pair>
-void PairSearch::keep_candidates(const std::vector<Pair>& pairs, Candidates& candidates,
-                                 std::vector<CollisionPair>* close) {
-  const Index count = static_cast<Index>(pairs.size()), chunks = (count + chunk - 1) / chunk;
-  std::vector<std::vector<Corners>> kept(static_cast<std::size_t>(chunks));
-  std::vector<std::vector<CollisionPair>> found(static_cast<std::size_t>(chunks));
-  parallel_for(chunks, 1, [&](Index begin, Index end) {
+void PairSearch::keep_candidates(const std::vector<Pair>& pairs, Candidates& candidates, std::vector<CollisionPair>* close) {
+  std::vector<CollisionPair> unasked;
+  const auto keep = [&](Index begin, Index end, std::vector<Corners>& kept, std::vector<CollisionPair>& found) {
     std::array<Corners, chunk> corners;
     std::array<std::uint8_t, chunk> clear;
-    for (Index c = begin; c < end; ++c) {
-      const Index first = c * chunk, in_chunk = std::min(chunk, count - first);
-      for (Index k = 0; k < in_chunk; ++k) corners[k] = pair_of(broad_phase_.surface(), pairs[first + k]).node;
-      ways_.find_clear(corners.data(), in_chunk, candidates.edges, reach_, clear.data());
-      for (Index k = 0; k < in_chunk; ++k) {
-        if (clear[k] & detail::clear_throughout) continue;
-        kept[c].push_back(corners[k]);
-        if (close && !(clear[k] & detail::clear_at_start)) found[c].push_back({corners[k], candidates.edges});
-      }
+    for (Index k = begin; k < end; ++k) corners[k - begin] = pair_of(broad_phase_.surface(), pairs[k]).node;
+    ways_.find_clear(corners.data(), end - begin, candidates.edges, reach_, clear.data());
+    for (Index k = 0; k < end - begin; ++k) {
+      if (clear[k] & detail::clear_throughout) continue;
+      kept.push_back(corners[k]);
+      if (close && !(clear[k] & detail::clear_at_start)) found.push_back({corners[k], candidates.edges});
     }
-  });
-  for (const auto& part : kept) candidates.pairs.insert(candidates.pairs.end(), part.begin(), part.end());
-  if (!close) return;
-  for (const auto& part : found) close->insert(close->end(), part.begin(), part.end());
+  };
+  collect(static_cast<Index>(pairs.size()), chunk, keep, candidates.pairs, close ? *close : unasked);
 }
 
 void PairSearch::add_candidates(std::span<const Vec3> x0, std::span<const std::uint8_t> moved, std::vector<CollisionPair>* close) {
@@ -65,17 +57,16 @@ std::vector<NearPair> PairSearch::near(std::span<const Vec3> x0, std::span<const
   edges_.pairs.clear();
   std::vector<CollisionPair> close;
   add_candidates(x0, {}, &close);
-  const Index count = static_cast<Index>(close.size()), chunks = (count + chunk - 1) / chunk;
-  std::vector<std::vector<NearPair>> found(static_cast<std::size_t>(chunks));
-  parallel_for(chunks, 1, [&](Index begin, Index end) {
-    for (Index c = begin; c < end; ++c)
-      for (Index k = c * chunk; k < std::min(count, (c + 1) * chunk); ++k) {
-        const NearPair candidate{close[k], closest(close[k], x0)};
-        if (candidate.proximity.inside && candidate.proximity.distance < thickness(candidate.pair)) found[c].push_back(candidate);
-      }
-  });
   std::vector<NearPair> near;
-  for (const auto& part : found) near.insert(near.end(), part.begin(), part.end());
+  collect(
+      static_cast<Index>(close.size()), chunk,
+      [&](Index begin, Index end, std::vector<NearPair>& found) {
+        for (Index k = begin; k < end; ++k) {
+          const NearPair candidate{close[k], closest(close[k], x0)};
+          if (candidate.proximity.inside && candidate.proximity.distance < thickness(candidate.pair)) found.push_back(candidate);
+        }
+      },
+      near);
   return near;
 }
 

@@ -64,7 +64,7 @@ class PairSearch {
 
   BroadPhase broad_phase_;
   double reach_ = 0.0;
-  std::vector<Vec3> end_;  // the candidates' x1
+  std::vector<Vec3> end_;   // the candidates' x1
   detail::FloatWays ways_;  // from x0 to end_
   Candidates triangles_, edges_{{}, true};
   std::vector<std::uint8_t> far_;  // nodes whose end is further away from that than slack

@@ -233,12 +233,13 @@ TAUT_MULTIVERSION void find_clear_triangles(const PairCorners* pairs, Index coun
   find_all<false>(pairs, count, DoublePositions{x0, x1}, distance, clear);
 }
 
-TAUT_MULTIVERSION_AVX2 void find_clear_edges(const PairCorners* pairs, Index count, const FloatWay* ways, float distance, std::uint8_t* clear) {
+TAUT_MULTIVERSION_AVX2 void find_clear_edges(const PairCorners* pairs, Index count, const FloatWay* ways, float distance,
+                                             std::uint8_t* clear) {
   find_all<true>(pairs, count, FloatPositions{ways}, distance, clear);
 }
 
 TAUT_MULTIVERSION_AVX2 void find_clear_triangles(const PairCorners* pairs, Index count, const FloatWay* ways, float distance,
-                                            std::uint8_t* clear) {
+                                                 std::uint8_t* clear) {
   find_all<false>(pairs, count, FloatPositions{ways}, distance, clear);
 }
 

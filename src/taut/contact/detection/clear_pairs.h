@@ -28,7 +28,7 @@ constexpr std::uint8_t clear_at_start = 1, clear_throughout = 2;
 // clear[k]: the flags of pair k. x0, x1: m, of all vertices, at the start and at the end.
 void find_clear(const PairCorners* pairs, Index count, bool edges, const Vec3* x0, const Vec3* x1, double distance, std::uint8_t* clear);
 
-// The same in single precision, at twice the speed, and as sure: what the coordinates lose is added to the distance (docs/mathematics.md,
+// The same in single precision, twice as many pairs at once, and as sure: what the coordinates lose is added to the distance (docs/mathematics.md,
 // 6.8). Finds nearly as many pairs clear, where the scene is not a million times larger than the distance.
 struct alignas(32) FloatWay {
   float at[2][4] = {};  // m, from the middle of all: x, y, z at the start and at the end, and one unused

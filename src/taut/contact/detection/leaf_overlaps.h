@@ -3,7 +3,8 @@
 //
 //   mine, theirs         boxes of the two groups, and the corners of their items: one CornerGroup each a corner
 //   lanes                of mine that are looked at
-//   masks[l]             for these: the lanes of theirs whose boxes may overlap that of lane l at some time (`overlapping`), and whose items
+//   masks[l]             for these: the lanes of theirs whose boxes may overlap that of lane l at some time (`overlapping`), and whose
+//   items
 //                        have no corner in common with its item; other entries are left alone
 //   still                only the boxes at the start are there
 
