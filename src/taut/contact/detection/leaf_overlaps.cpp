@@ -57,6 +57,9 @@ TAUT_ALWAYS_INLINE void overlaps(const LeafGroup& mine, const LeafGroup& theirs,
         : overlaps<my_corners, their_corners, false>(mine, theirs, lanes, masks);
 }
 
+TAUT_MULTIVERSION_AVX2 void overlaps_of_boxes(const LeafGroup& mine, const LeafGroup& theirs, Mask lanes, bool still, std::uint8_t* masks) {
+  overlaps<0, 0>(mine, theirs, lanes, still, masks);
+}
 TAUT_MULTIVERSION_AVX2 void overlaps_1_3(const LeafGroup& mine, const LeafGroup& theirs, Mask lanes, bool still, std::uint8_t* masks) {
   overlaps<1, 3>(mine, theirs, lanes, still, masks);
 }
@@ -68,6 +71,10 @@ TAUT_MULTIVERSION_AVX2 void overlaps_2_3(const LeafGroup& mine, const LeafGroup&
 }
 
 }  // namespace
+
+void group_overlaps(const BoxGroup& mine, const BoxGroup& theirs, Mask lanes, bool still, std::uint8_t* masks) {
+  overlaps_of_boxes({&mine, nullptr}, {&theirs, nullptr}, lanes, still, masks);
+}
 
 template <>
 void leaf_overlaps<1, 3>(const LeafGroup& mine, const LeafGroup& theirs, Mask lanes, bool still, std::uint8_t* masks) {

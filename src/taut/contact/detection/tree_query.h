@@ -1,10 +1,12 @@
 #pragma once
 // All pairs of overlapping items of two box trees, or of one with itself, for contact/broad_phase.h. Private to contact.
 //
-// Each group of eight items of the first tree descends through the second. Chunks of such groups write lists of their own, which are joined
-// in order, so the result does not depend on the number of threads.
+// Each block of 64 items of the first tree, eight groups of eight, descends through the second down to the blocks that are near it; then
+// groups meet groups, and items items. Chunks of blocks write lists of their own, which are joined in order, so the result does not depend
+// on the number of threads.
 
 #include <bit>
+#include <limits>
 #include <numeric>
 
 #include "taut/base/parallel.h"
@@ -21,6 +23,12 @@ inline Index strided(Index k, Index count) {
   return static_cast<Index>(static_cast<Offset>(k) * stride % count);
 }
 
+// Eight groups of the second tree, and for each of eight groups of the first one those of them that it may meet.
+struct Block {
+  Index group;
+  std::array<std::uint8_t, 8> masks;
+};
+
 // Items of the first tree have `first_corners` corners each, of the second `second_corners`.
 template <int first_corners, int second_corners, class Pair, class MakePair>
 class TreeQuery {
@@ -32,12 +40,43 @@ class TreeQuery {
     moved_first_ = itself_ ? moved_second_ : first.any_moved(moved);
   }
 
-  // Pairs of the items in group q of the first tree.
-  void run(Index q, std::vector<Pair>& pairs) const {
-    const bool all_solid = first_.solid(1, q / 8) >> (q % 8) & 1;
-    const bool none_moved = restricted() && moved_first_[0][q] == 0;
-    if (none_moved && itself_) return;
-    const MovingBox around = box_of_lane(first_.group(1, q / 8), q % 8);
+  // Pairs of the items below group p of the first tree's level 1. blocks: working memory.
+  void run(Index p, std::vector<Block>& blocks, std::vector<Pair>& pairs) const {
+    if (itself_ && restricted() && moved_first_[1][p] == 0) return;
+    find_blocks(p, blocks);
+    for (Index lane = 0; lane < first_.lanes_used(1, p); ++lane) {
+      const Index q = 8 * p + lane;
+      const bool all_solid = first_.solid(1, p) >> lane & 1;
+      const bool none_moved = restricted() && moved_first_[0][q] == 0;
+      if (none_moved && itself_) continue;
+      for (const Block& block : blocks) {
+        Mask mask = block.masks[lane];
+        if (all_solid) mask &= ~second_.solid(1, block.group);
+        if (none_moved) mask &= moved_second_[1][block.group];
+        if (itself_ && !restricted()) mask &= from(q, block.group);
+        while (mask != 0) {  // from the highest lane down, as above the blocks
+          const int below = 31 - std::countl_zero(mask);
+          mask &= ~(1u << below);
+          const Mask lanes = overlapping(first_.group(0, q), box_of_lane(second_.group(1, block.group), below), still_);
+          meet(q, 8 * block.group + below, lanes, pairs);
+        }
+      }
+    }
+  }
+
+ private:
+  bool restricted() const { return !moved_second_.empty(); }
+
+  // Lanes of `group` with what is not before `other`, on the level of both: in a tree with itself, those met this one on their own way.
+  static Mask from(Index other, Index group) {
+    const Index lane = other - 8 * group;
+    return lane <= 0 ? 0xffu : lane < 8 ? 0xffu << lane : 0u;
+  }
+
+  // The groups of the second tree's level 1 that have something near group p of the first one's, in ascending order.
+  void find_blocks(Index p, std::vector<Block>& blocks) const {
+    blocks.clear();
+    const MovingBox around = first_.height() > 2 ? box_of_lane(first_.group(2, p / 8), p % 8) : everything();
     struct Visit {
       int level;
       Index group;
@@ -47,29 +86,28 @@ class TreeQuery {
     stack[depth++] = {second_.height() - 1, 0};
     while (depth > 0) {
       const Visit visit = stack[--depth];
-      Mask mask = overlapping(second_.group(visit.level, visit.group), around, still_);
-      if (all_solid) mask &= ~second_.solid(visit.level, visit.group);
-      if (none_moved) mask &= moved_second_[visit.level][visit.group];
-      if (itself_ && !restricted()) {
-        // Groups before q met q on their own way.
-        const Index from = (q >> (3 * (visit.level - 1))) - 8 * visit.group;
-        if (from > 0) mask &= from < 8 ? ~0u << from : 0u;
+      if (visit.level == 1) {
+        Block& block = blocks.emplace_back();
+        block.group = visit.group;
+        group_overlaps(first_.group(1, p), second_.group(1, visit.group), 0xff, still_, block.masks.data());
+        continue;
       }
+      Mask mask = overlapping(second_.group(visit.level, visit.group), around, still_);
+      if (itself_ && !restricted()) mask &= from(p >> (3 * (visit.level - 2)), visit.group);
       // The last pushed is visited first: so from the highest lane down.
       for (Mask left = mask; left != 0;) {
         const int lane = 31 - std::countl_zero(left);
         left &= ~(1u << lane);
-        const Index below = 8 * visit.group + lane;
-        if (visit.level > 1)
-          stack[depth++] = {visit.level - 1, below};
-        else
-          meet(q, below, overlapping(first_.group(0, q), box_of_lane(second_.group(1, visit.group), lane), still_), pairs);
+        stack[depth++] = {visit.level - 1, 8 * visit.group + lane};
       }
     }
   }
 
- private:
-  bool restricted() const { return !moved_second_.empty(); }
+  static MovingBox everything() {
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    constexpr Box box{{-infinity, -infinity, -infinity, 0}, {infinity, infinity, infinity, 0}};
+    return {{box, box}};
+  }
 
   // Those items in the given lanes of group q with the items of group g of the second tree.
   void meet(Index q, Index g, Mask lanes, std::vector<Pair>& pairs) const {
@@ -104,15 +142,16 @@ void query(const BoxTree& first, const BoxTree& second, std::span<const std::uin
            std::vector<Pair>& pairs, const MakePair& make_pair) {
   pairs.clear();
   if (first.items() == 0 || second.items() == 0) return;
-  constexpr Index groups_per_chunk = 32;
+  constexpr Index blocks_per_chunk = 4;
   const TreeQuery<first_corners, second_corners, Pair, MakePair> tree_query(first, second, moved, make_pair);
-  const Index chunks = (first.groups() + groups_per_chunk - 1) / groups_per_chunk;
+  const Index blocks = (first.groups() + 7) / 8, chunks = (blocks + blocks_per_chunk - 1) / blocks_per_chunk;
   found.resize(static_cast<std::size_t>(chunks));
   parallel_for(chunks, 1, [&](Index begin, Index end) {
+    std::vector<Block> near;
     for (Index k = begin; k < end; ++k) {
       const Index c = strided(k, chunks);
       found[c].clear();
-      for (Index q = c * groups_per_chunk; q < std::min(first.groups(), (c + 1) * groups_per_chunk); ++q) tree_query.run(q, found[c]);
+      for (Index p = c * blocks_per_chunk; p < std::min(blocks, (c + 1) * blocks_per_chunk); ++p) tree_query.run(p, near, found[c]);
     }
   });
   std::size_t total = 0;
