@@ -8,6 +8,7 @@
 
 #include "moving_pairs.h"
 #include "taut/contact/collision_pair.h"
+#include "taut/contact/intersection.h"
 #include "taut/mesh/grid.h"
 #include "triangle_soups.h"
 
@@ -166,6 +167,96 @@ TEST(ClearPairsInSingle, AreFurtherApartWhereverTheyAre) {
     }
 }
 
+namespace {
+
+using detail::SegmentTriangle;
+
+std::vector<std::uint8_t> apart_flags(const std::vector<SegmentTriangle>& pairs, const std::vector<Vec3>& x) {
+  std::vector<std::uint8_t> flags(pairs.size(), 255);
+  detail::FloatWays positions;
+  positions.set(x, x);
+  positions.find_apart(pairs.data(), static_cast<Index>(pairs.size()), flags.data());
+  return flags;
+}
+
+bool meets(const SegmentTriangle& pair, const std::vector<Vec3>& x) {
+  return segment_meets_triangle(x[pair[0]], x[pair[1]], x[pair[2]], x[pair[3]], x[pair[4]]).meets;
+}
+
+}  // namespace
+
+TEST(SegmentsApartFromTriangles, DoNotMeetThem) {
+  std::mt19937 random(5);
+  for (const double size : {1.0, 1e-3})
+    for (const double place : {0.0, 1.0, 1e3}) {
+      std::vector<Vec3> x;
+      std::vector<SegmentTriangle> pairs;
+      for (int k = 0; k < 4001; ++k) {
+        const Vec3 shift = place * Vec3(1, 2, 3) + test::anywhere(random, place), away = test::anywhere(random, size);
+        const auto first = static_cast<Index>(x.size());
+        pairs.push_back({first, first + 1, first + 2, first + 3, first + 4});
+        for (int c = 0; c < 5; ++c) x.push_back(shift + test::anywhere(random, size) + (c < 2 ? away : Vec3(Vec3::Zero())));
+      }
+      const std::vector<std::uint8_t> flags = apart_flags(pairs, x);
+      int apart = 0, meeting = 0;
+      for (std::size_t k = 0; k < pairs.size(); ++k) {
+        const bool meet = meets(pairs[k], x);
+        meeting += meet;
+        ASSERT_LE(flags[k], 1);
+        apart += flags[k];
+        EXPECT_FALSE(flags[k] && meet) << k;
+      }
+      EXPECT_GT(meeting, 100);
+      if (size > 1e-4 * place) {
+        EXPECT_GT(apart, (4001 - meeting) * 3 / 4) << size << " " << place;
+      }
+    }
+}
+
+// An end on the face, on a side, on a corner; a segment across a side or in the triangle's plane: in numbers that are exact.
+TEST(SegmentsApartFromTriangles, NoneThatTouchesIsApart) {
+  std::mt19937 random(6);
+  std::uniform_int_distribution<int> any(-8, 8), exponent(-30, 30), kinds(0, 3);
+  for (int trial = 0; trial < 5000; ++trial) {
+    const double scale = std::ldexp(1.0, exponent(random));
+    const auto whole = [&] { return Vec3(any(random), any(random), any(random)); };
+    const Vec3 c = 4.0 * whole(), d = 4.0 * whole(), e = 4.0 * whole();
+    Vec3 a;  // on the triangle
+    switch (kinds(random)) {
+      case 0:
+        a = 0.5 * c + 0.25 * d + 0.25 * e;
+        break;
+      case 1:
+        a = 0.75 * c + 0.25 * e;
+        break;
+      case 2:
+        a = d;
+        break;
+      default:
+        a = 0.5 * (d + e);
+        break;
+    }
+    const Vec3 towards = kinds(random) == 0 ? Vec3(c - d) : whole();
+    const bool across = kinds(random) == 0;
+    std::vector<Vec3> x{a, a + towards, c, d, e};
+    if (across) x[0] = a - towards;
+    for (Vec3& corner : x) corner *= scale;
+    const SegmentTriangle pair{0, 1, 2, 3, 4};
+    ASSERT_TRUE(meets(pair, x));
+    EXPECT_EQ(apart_flags({pair}, x)[0], 0);
+  }
+}
+
+TEST(SegmentsApartFromTriangles, NumbersThatAreNotFiniteAreNotApart) {
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
+    for (int corner = 0; corner < 5; ++corner) {
+      std::vector<Vec3> x{{0, 0, 9}, {1, 0, 9}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+      ASSERT_EQ(apart_flags({{0, 1, 2, 3, 4}}, x)[0], 1);
+      x[corner][1] = bad;
+      EXPECT_EQ(apart_flags({{0, 1, 2, 3, 4}}, x)[0], 0);
+    }
+}
+
 // What it is for: neighbours in smooth cloth need no closest points.
 TEST_P(ClearPairs, NeighboursInASmoothSheetAreClear) {
   TriangleMesh sheet = make_grid({20, 20});
@@ -189,6 +280,17 @@ TEST_P(ClearPairs, NeighboursInASmoothSheetAreClear) {
   broad_phase.find_edge_edge(edge_edge);
   EXPECT_GT(share_clear(vertex_triangle, false), 0.99);
   EXPECT_GT(share_clear(edge_edge, true), 0.97);
+
+  std::vector<EdgeTriangle> edge_triangle;
+  broad_phase.find_edge_triangle(edge_triangle);
+  std::vector<SegmentTriangle> pairs;
+  for (const auto& [edge, triangle] : edge_triangle) {
+    const EdgeVertices& e = surface.edges[edge];
+    const Triangle& t = surface.triangles[triangle];
+    pairs.push_back({e[0], e[1], t[0], t[1], t[2]});
+  }
+  EXPECT_GT(pairs.size(), 100u);
+  EXPECT_GT(static_cast<double>(std::ranges::count(apart_flags(pairs, sheet.positions), 1)) / double(pairs.size()), 0.99);
 }
 
 }  // namespace taut

@@ -22,7 +22,7 @@ template <class Pair>
 void PairSearch::keep_candidates(const std::vector<Pair>& pairs, Candidates& candidates, std::vector<CollisionPair>* close) {
   std::vector<CollisionPair> unasked;
   const auto keep = [&](Index begin, Index end, std::vector<Corners>& kept, std::vector<CollisionPair>& found) {
-    std::array<Corners, chunk> corners;
+    std::array<Corners, chunk> corners{};
     std::array<std::uint8_t, chunk> clear;
     for (Index k = begin; k < end; ++k) corners[k - begin] = pair_of(broad_phase_.surface(), pairs[k]).node;
     ways_.find_clear(corners.data(), end - begin, candidates.edges, reach_, clear.data());

@@ -20,6 +20,7 @@ template <class T>
 constexpr Index lanes = 32 / static_cast<Index>(sizeof(T));
 typedef double DoubleLanes __attribute__((vector_size(32)));
 typedef float FloatLanes __attribute__((vector_size(32)));
+typedef float FloatHalf __attribute__((vector_size(16)));
 typedef std::int64_t DoubleMask __attribute__((vector_size(32)));
 typedef std::int32_t FloatMask __attribute__((vector_size(32)));
 
@@ -136,6 +137,20 @@ struct FloatPositions {
     transpose(low, start);
     transpose(high, end);
   }
+  // Of eight vertices at the start.
+  template <class List>
+  TAUT_ALWAYS_INLINE Lanes3<float> corner(const List* lists, int k) const {
+    FloatLanes v[4];
+    for (int i = 0; i < 4; ++i) {
+      FloatHalf a, b;
+      __builtin_memcpy(&a, &way[lists[i][k]], sizeof a);
+      __builtin_memcpy(&b, &way[lists[i + 4][k]], sizeof b);
+      v[i] = __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
+    }
+    Lanes3<float> corner;
+    transpose(v, corner);
+    return corner;
+  }
   TAUT_ALWAYS_INLINE static void transpose(const FloatLanes* v, Lanes3<float>& to) {
     const FloatLanes xy01 = __builtin_shufflevector(v[0], v[1], 0, 8, 1, 9, 4, 12, 5, 13);
     const FloatLanes xy23 = __builtin_shufflevector(v[2], v[3], 0, 8, 1, 9, 4, 12, 5, 13);
@@ -175,6 +190,39 @@ struct Planes {
   }
 };
 
+// Of eight segments and triangles: is there a plane between them?
+struct SegmentPlanes {
+  Lanes3<float> between, segment, first, second;  // a - c, b - a, d - c, e - c
+  Lanes3<float> size;                             // sum of the magnitudes of all these
+  float distance;
+  LaneMask<float> apart{};
+
+  TAUT_ALWAYS_INLINE void attempt(const Lanes3<float>& n) {
+    constexpr float bound = rounding_bound * Precision<float>::u;
+    const FloatLanes zero{}, square = dot(n, n), kept = distance * root(square);
+    const FloatLanes needed = kept + bound * (dot(absolute(n), size) + kept) + Precision<float>::underflow_bound;
+    const FloatLanes least =
+        dot(n, between) + smaller<float>(dot(n, segment), zero) - larger<float>(larger<float>(dot(n, first), dot(n, second)), zero);
+    apart |= (square > Precision<float>::least_square) & (least > needed);
+  }
+};
+
+TAUT_ALWAYS_INLINE void find_apart_few(const SegmentTriangle* pairs, const FloatPositions& positions, float distance, std::uint8_t* apart) {
+  Lanes3<float> x[5];
+  for (int k = 0; k < 5; ++k) x[k] = positions.corner(pairs, k);
+  SegmentPlanes planes{x[0] - x[2], x[1] - x[0], x[3] - x[2], x[4] - x[2], {}, distance};
+  planes.size = absolute(planes.between) + absolute(planes.segment) + absolute(planes.first) + absolute(planes.second);
+  const auto times = [](float s) __attribute__((always_inline)) { return FloatLanes{} + s; };
+  const Lanes3<float> middle = times(6) * planes.between + times(3) * planes.segment - times(2) * (planes.first + planes.second);
+  planes.attempt(middle);
+  planes.attempt(orthogonal(middle, planes.segment));
+  const Lanes3<float> normal = cross(planes.first, planes.second);
+  const LaneMask<float> flip = (LaneMask<float>)dot(normal, middle) & sign_bit<float>();
+  const auto towards = [&](const FloatLanes& a) __attribute__((always_inline)) { return (FloatLanes)((LaneMask<float>)a ^ flip); };
+  planes.attempt({towards(normal.x), towards(normal.y), towards(normal.z)});
+  for (int l = 0; l < lanes<float>; ++l) apart[l] = static_cast<std::uint8_t>(planes.apart[l] & 1);
+}
+
 // Of as many pairs as there are lanes.
 template <bool edges, class Positions>
 TAUT_ALWAYS_INLINE void find_clear_few(const PairCorners* pairs, const Positions& positions, typename Positions::Scalar distance,
@@ -207,18 +255,26 @@ TAUT_ALWAYS_INLINE void find_clear_few(const PairCorners* pairs, const Positions
     clear[l] = static_cast<std::uint8_t>((planes.at_start[l] ? clear_at_start : 0) | (planes.throughout[l] ? clear_throughout : 0));
 }
 
+// find(pairs + k, flags + k) for every `few` of the pairs; the last ones are filled up with copies of the last.
+template <Index few, class Pair, class Find>
+TAUT_ALWAYS_INLINE void for_lanes(const Pair* pairs, Index count, std::uint8_t* flags, const Find& find) {
+  Index k = 0;
+  for (; k + few <= count; k += few) find(pairs + k, flags + k);
+  if (k == count) return;
+  Pair last[few];
+  std::uint8_t last_flags[few];
+  for (Index l = 0; l < few; ++l) last[l] = pairs[std::min(k + l, count - 1)];
+  find(last, last_flags);
+  std::copy(last_flags, last_flags + (count - k), flags + k);
+}
+
 template <bool edges, class Positions>
 TAUT_ALWAYS_INLINE void find_all(const PairCorners* pairs, Index count, const Positions& positions, typename Positions::Scalar distance,
                                  std::uint8_t* clear) {
-  constexpr Index few = lanes<typename Positions::Scalar>;
-  Index k = 0;
-  for (; k + few <= count; k += few) find_clear_few<edges>(pairs + k, positions, distance, clear + k);
-  if (k == count) return;
-  PairCorners last[few];
-  std::uint8_t flags[few];
-  for (Index l = 0; l < few; ++l) last[l] = pairs[std::min(k + l, count - 1)];
-  find_clear_few<edges>(last, positions, distance, flags);
-  std::copy(flags, flags + (count - k), clear + k);
+  for_lanes<lanes<typename Positions::Scalar>>(
+      pairs, count, clear, [&](const PairCorners* few, std::uint8_t* flags) __attribute__((always_inline)) {
+        find_clear_few<edges>(few, positions, distance, flags);
+      });
 }
 
 }  // namespace
@@ -241,6 +297,14 @@ TAUT_MULTIVERSION_AVX2 void find_clear_edges(const PairCorners* pairs, Index cou
 TAUT_MULTIVERSION_AVX2 void find_clear_triangles(const PairCorners* pairs, Index count, const FloatWay* ways, float distance,
                                                  std::uint8_t* clear) {
   find_all<false>(pairs, count, FloatPositions{ways}, distance, clear);
+}
+
+TAUT_MULTIVERSION_AVX2 void find_apart_all(const SegmentTriangle* pairs, Index count, const FloatWay* ways, float distance,
+                                           std::uint8_t* apart) {
+  for_lanes<lanes<float>>(
+      pairs, count, apart, [&](const SegmentTriangle* few, std::uint8_t* flags) __attribute__((always_inline)) {
+        find_apart_few(few, FloatPositions{ways}, distance, flags);
+      });
 }
 
 void find_clear(const PairCorners* pairs, Index count, bool edges, const Vec3* x0, const Vec3* x1, double distance, std::uint8_t* clear) {
@@ -282,11 +346,18 @@ void FloatWays::set(std::span<const Vec3> x0, std::span<const Vec3> x1) {
   });
 }
 
-void FloatWays::find_clear(const PairCorners* pairs, Index count, bool edges, double distance, std::uint8_t* clear) const {
+float FloatWays::widened(double distance) const {
   // 2 sqrt(3) < 4; the rest is for rounding here.
-  const double enough = (distance + 4.0 * coordinate_error_) * (1.0 + 8.0 * Precision<float>::u);
-  const float wanted = static_cast<float>(enough);
+  return static_cast<float>((distance + 4.0 * coordinate_error_) * (1.0 + 8.0 * Precision<float>::u));
+}
+
+void FloatWays::find_clear(const PairCorners* pairs, Index count, bool edges, double distance, std::uint8_t* clear) const {
+  const float wanted = widened(distance);
   edges ? find_clear_edges(pairs, count, ways_.data(), wanted, clear) : find_clear_triangles(pairs, count, ways_.data(), wanted, clear);
+}
+
+void FloatWays::find_apart(const SegmentTriangle* pairs, Index count, std::uint8_t* apart) const {
+  find_apart_all(pairs, count, ways_.data(), widened(0.0), apart);
 }
 
 }  // namespace taut::detail

@@ -46,24 +46,9 @@ bool meet_in_plane(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, c
   return true;
 }
 
-// Does the plane between the middles of segment and triangle separate them, rounding included? Most candidates are neighbours in a flat
-// piece of cloth, where the signs below are hard to decide. Each n·x, of differences with a relative error of u, has passed at most 4
-// roundings.
-bool planes_apart(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e) {
-  const Vec3 difference[6] = {c - a, d - a, e - a, c - b, d - b, e - b};
-  const Vec3 n = (difference[0] + difference[1] + difference[2]) + (difference[3] + difference[4] + difference[5]);
-  double least = n.dot(difference[0]), size = 0.0;
-  for (const Vec3& x : difference) {
-    least = std::min(least, n.dot(x));
-    size = std::max(size, n.cwiseAbs().dot(x.cwiseAbs()));
-  }
-  return least > 8.0 * 0x1p-53 * size + 1e-250;
-}
-
 }  // namespace
 
 Meeting segment_meets_triangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e) {
-  if (planes_apart(a, b, c, d, e)) return {};
   const int side_a = orientation(c, d, e, a), side_b = orientation(c, d, e, b);
   if (side_a * side_b > 0) return {};
   // On which side of each of the triangle's sides the line a b passes.
