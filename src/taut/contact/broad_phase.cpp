@@ -51,10 +51,6 @@ std::vector<Index> all_vertices(const CollisionSurface& surface) {
 struct BroadPhase::Trees {
   std::vector<MovingBox> boxes;  // of vertices
   BoxTree vertices, edges, triangles;
-  // Lists of the parts of a query.
-  std::vector<std::vector<VertexTriangle>> vertex_triangle;
-  std::vector<std::vector<EdgeEdge>> edge_edge;
-  std::vector<std::vector<EdgeTriangle>> edge_triangle;
 
   Trees(const CollisionSurface& surface, std::span<const Vec3> positions)
       : boxes(static_cast<std::size_t>(surface.vertices)),
@@ -90,22 +86,51 @@ void BroadPhase::refit_moved(std::span<const Vec3> x0, std::span<const Vec3> x1,
   for (BoxTree* tree : {&trees.vertices, &trees.edges, &trees.triangles}) tree->refit_moved(trees.boxes, moved);
 }
 
-void BroadPhase::find_vertex_triangle(std::vector<VertexTriangle>& pairs, std::span<const std::uint8_t> moved) {
-  detail::query<1, 3>(trees_->vertices, trees_->triangles, moved, trees_->vertex_triangle, pairs, [](Index vertex, Index triangle) {
-    return VertexTriangle{vertex, triangle};
-  });
+Index BroadPhase::vertex_parts() const { return detail::parts_of(trees_->vertices); }
+Index BroadPhase::edge_parts() const { return detail::parts_of(trees_->edges); }
+
+void BroadPhase::for_vertex_triangle(const UsePart<VertexTriangle>& use, std::span<const std::uint8_t> moved) const {
+  const auto pair = [](Index vertex, Index triangle) { return VertexTriangle{vertex, triangle}; };
+  detail::query<1, 3, VertexTriangle>(trees_->vertices, trees_->triangles, moved, pair, use);
 }
 
-void BroadPhase::find_edge_edge(std::vector<EdgeEdge>& pairs, std::span<const std::uint8_t> moved) {
-  detail::query<2, 2>(trees_->edges, trees_->edges, moved, trees_->edge_edge, pairs, [](Index a, Index b) {
-    return EdgeEdge{std::min(a, b), std::max(a, b)};
-  });
+void BroadPhase::for_edge_edge(const UsePart<EdgeEdge>& use, std::span<const std::uint8_t> moved) const {
+  const auto pair = [](Index a, Index b) { return EdgeEdge{std::min(a, b), std::max(a, b)}; };
+  detail::query<2, 2, EdgeEdge>(trees_->edges, trees_->edges, moved, pair, use);
 }
 
-void BroadPhase::find_edge_triangle(std::vector<EdgeTriangle>& pairs, std::span<const std::uint8_t> moved) {
-  detail::query<2, 3>(trees_->edges, trees_->triangles, moved, trees_->edge_triangle, pairs, [](Index edge, Index triangle) {
-    return EdgeTriangle{edge, triangle};
-  });
+void BroadPhase::for_edge_triangle(const UsePart<EdgeTriangle>& use, std::span<const std::uint8_t> moved) const {
+  const auto pair = [](Index edge, Index triangle) { return EdgeTriangle{edge, triangle}; };
+  detail::query<2, 3, EdgeTriangle>(trees_->edges, trees_->triangles, moved, pair, use);
+}
+
+namespace {
+
+// The list that for_pairs(use) gives in parts.
+template <class Pair, class ForPairs>
+void join(Index parts, const ForPairs& for_pairs, std::vector<Pair>& pairs) {
+  std::vector<std::vector<Pair>> found(static_cast<std::size_t>(parts));
+  for_pairs(
+      [&](Index part, std::span<const Pair> of_part) { found[static_cast<std::size_t>(part)].assign(of_part.begin(), of_part.end()); });
+  pairs.clear();
+  for (const auto& list : found) pairs.insert(pairs.end(), list.begin(), list.end());
+}
+
+}  // namespace
+
+void BroadPhase::find_vertex_triangle(std::vector<VertexTriangle>& pairs, std::span<const std::uint8_t> moved) const {
+  join(
+      vertex_parts(), [&](const UsePart<VertexTriangle>& use) { for_vertex_triangle(use, moved); }, pairs);
+}
+
+void BroadPhase::find_edge_edge(std::vector<EdgeEdge>& pairs, std::span<const std::uint8_t> moved) const {
+  join(
+      edge_parts(), [&](const UsePart<EdgeEdge>& use) { for_edge_edge(use, moved); }, pairs);
+}
+
+void BroadPhase::find_edge_triangle(std::vector<EdgeTriangle>& pairs, std::span<const std::uint8_t> moved) const {
+  join(
+      edge_parts(), [&](const UsePart<EdgeTriangle>& use) { for_edge_triangle(use, moved); }, pairs);
 }
 
 }  // namespace taut

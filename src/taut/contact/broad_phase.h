@@ -11,10 +11,11 @@
 // Each remaining pair is reported once. Lists come in an order that depends on the surface and the positions, not on the number of threads.
 //
 // Method: one packed tree of eight children a node for vertices, edges and triangles each, ordered once by halving the positions given to
-// the constructor. Boxes are stored as floats, rounded outwards. refit is O(n) and moves no node; a query takes groups of eight through a
-// tree. One call at a time: queries use memory that they keep.
+// the constructor. Boxes are stored as floats, rounded outwards. refit is O(n) and moves no node; a query takes blocks of 64 items through
+// a tree.
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -51,10 +52,21 @@ class BroadPhase {
   // The same, where since the last refit only vertices marked in `moved` have got another way, with the same margin.
   void refit_moved(std::span<const Vec3> x0, std::span<const Vec3> x1, double margin, std::span<const std::uint8_t> moved);
 
-  // Replace `pairs`. moved: empty for all pairs, or one byte a vertex, not 0 where it moved.
-  void find_vertex_triangle(std::vector<VertexTriangle>& pairs, std::span<const std::uint8_t> moved = {});
-  void find_edge_edge(std::vector<EdgeEdge>& pairs, std::span<const std::uint8_t> moved = {});
-  void find_edge_triangle(std::vector<EdgeTriangle>& pairs, std::span<const std::uint8_t> moved = {});
+  // Lists of pairs come in parts, so that each can be worked on while it is fresh: use(part, pairs) is called at most once for each of the
+  // parts 0 ... parts-1, from several threads at once; put together in order, with nothing for the others, they are the list.
+  // moved: empty for all pairs, or one byte a vertex, not 0 where it moved.
+  template <class Pair>
+  using UsePart = std::function<void(Index part, std::span<const Pair> pairs)>;
+  Index vertex_parts() const;  // of lists of pairs with a vertex
+  Index edge_parts() const;    // of the others
+  void for_vertex_triangle(const UsePart<VertexTriangle>& use, std::span<const std::uint8_t> moved = {}) const;
+  void for_edge_edge(const UsePart<EdgeEdge>& use, std::span<const std::uint8_t> moved = {}) const;
+  void for_edge_triangle(const UsePart<EdgeTriangle>& use, std::span<const std::uint8_t> moved = {}) const;
+
+  // The whole lists. Replace `pairs`.
+  void find_vertex_triangle(std::vector<VertexTriangle>& pairs, std::span<const std::uint8_t> moved = {}) const;
+  void find_edge_edge(std::vector<EdgeEdge>& pairs, std::span<const std::uint8_t> moved = {}) const;
+  void find_edge_triangle(std::vector<EdgeTriangle>& pairs, std::span<const std::uint8_t> moved = {}) const;
 
   const CollisionSurface& surface() const { return *surface_; }
 

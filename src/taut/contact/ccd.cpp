@@ -91,7 +91,7 @@ void collect_hits(Index pairs, bool edges, std::span<const Vec3> x0, std::span<c
                   const CornersOf& corners_of, std::vector<PairImpact>& hits) {
   const auto decide = edges ? edge_edge_impact : vertex_triangle_impact;
   const auto find = [&](Index begin, Index end, std::vector<PairImpact>& found) {
-    std::array<detail::PairCorners, impact_chunk> corners;
+    std::array<detail::PairCorners, impact_chunk> corners{};
     std::array<std::uint8_t, impact_chunk> clear;
     for (Index k = begin; k < end; ++k) corners[k - begin] = corners_of(k);
     detail::find_clear(corners.data(), end - begin, edges, x0.data(), x1.data(), options.minimum_separation, clear.data());

@@ -17,24 +17,31 @@ bool any_in(const std::array<Index, 4>& nodes, std::span<const std::uint8_t> mar
 
 }  // namespace
 
-// Adds those of the broad phase's pairs that come within reach on the way to end_, and to `close` those that may be within it at the start.
+// Of a part of the broad phase's pairs: those that come within reach on the way to end_, and those that may be within it at the start.
+struct PairSearch::Part {
+  std::vector<Corners> kept;
+  std::vector<CollisionPair> close;
+  Offset tested = 0;
+};
+
 template <class Pair>
-void PairSearch::keep_candidates(const std::vector<Pair>& pairs, Candidates& candidates, std::vector<CollisionPair>* close) {
-  std::vector<CollisionPair> unasked;
-  const auto keep = [&](Index begin, Index end, std::vector<Corners>& kept, std::vector<CollisionPair>& found) {
-    std::array<Corners, chunk> corners{};
-    std::array<std::uint8_t, chunk> clear;
-    for (Index k = begin; k < end; ++k) corners[k - begin] = pair_of(broad_phase_.surface(), pairs[k]).node;
-    ways_.find_clear(corners.data(), end - begin, candidates.edges, reach_, clear.data());
-    for (Index k = 0; k < end - begin; ++k) {
+void PairSearch::keep(std::span<const Pair> pairs, bool edges, bool close, Part& part) const {
+  std::array<Corners, chunk> corners{};
+  std::array<std::uint8_t, chunk> clear{};
+  part.tested = std::ssize(pairs);
+  for (; !pairs.empty(); pairs = pairs.subspan(std::min<std::size_t>(chunk, pairs.size()))) {
+    const Index count = std::min(chunk, static_cast<Index>(pairs.size()));
+    for (Index k = 0; k < count; ++k) corners[k] = pair_of(broad_phase_.surface(), pairs[k]).node;
+    ways_.find_clear(corners.data(), count, edges, reach_, clear.data());
+    for (Index k = 0; k < count; ++k) {
       if (clear[k] & detail::clear_throughout) continue;
-      kept.push_back(corners[k]);
-      if (close && !(clear[k] & detail::clear_at_start)) found.push_back({corners[k], candidates.edges});
+      part.kept.push_back(corners[k]);
+      if (close && !(clear[k] & detail::clear_at_start)) part.close.push_back({corners[k], edges});
     }
-  };
-  collect(static_cast<Index>(pairs.size()), chunk, keep, candidates.pairs, close ? *close : unasked);
+  }
 }
 
+// Adds the candidates among the broad phase's pairs, and to `close` those that may be within reach at the start.
 void PairSearch::add_candidates(std::span<const Vec3> x0, std::span<const std::uint8_t> moved, std::vector<CollisionPair>* close) {
   if (moved.empty()) {
     broad_phase_.refit(x0, end_, reach_);
@@ -42,11 +49,21 @@ void PairSearch::add_candidates(std::span<const Vec3> x0, std::span<const std::u
     broad_phase_.refit_moved(x0, end_, reach_, moved);
   }
   ways_.set(x0, end_);
-  broad_phase_.find_vertex_triangle(vertex_triangle_, moved);
-  broad_phase_.find_edge_edge(edge_edge_, moved);
-  tested_ += std::ssize(vertex_triangle_) + std::ssize(edge_edge_);
-  keep_candidates(vertex_triangle_, triangles_, close);
-  keep_candidates(edge_edge_, edges_, close);
+  std::vector<Part> parts(static_cast<std::size_t>(broad_phase_.vertex_parts()));
+  broad_phase_.for_vertex_triangle(
+      [&](Index part, std::span<const VertexTriangle> pairs) { keep(pairs, false, close != nullptr, parts[part]); }, moved);
+  add(parts, triangles_, close);
+  parts.assign(static_cast<std::size_t>(broad_phase_.edge_parts()), {});
+  broad_phase_.for_edge_edge([&](Index part, std::span<const EdgeEdge> pairs) { keep(pairs, true, close != nullptr, parts[part]); }, moved);
+  add(parts, edges_, close);
+}
+
+void PairSearch::add(std::span<const Part> parts, Candidates& candidates, std::vector<CollisionPair>* close) {
+  for (const Part& part : parts) {
+    candidates.pairs.insert(candidates.pairs.end(), part.kept.begin(), part.kept.end());
+    if (close) close->insert(close->end(), part.close.begin(), part.close.end());
+    tested_ += part.tested;
+  }
 }
 
 std::vector<NearPair> PairSearch::near(std::span<const Vec3> x0, std::span<const Vec3> x1, double reach,

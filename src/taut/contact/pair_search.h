@@ -55,8 +55,10 @@ class PairSearch {
     bool edges = false;
   };
   void add_candidates(std::span<const Vec3> x0, std::span<const std::uint8_t> moved, std::vector<CollisionPair>* close);
+  struct Part;
   template <class Pair>
-  void keep_candidates(const std::vector<Pair>& pairs, Candidates& candidates, std::vector<CollisionPair>* close);
+  void keep(std::span<const Pair> pairs, bool edges, bool close, Part& part) const;
+  void add(std::span<const Part> parts, Candidates& candidates, std::vector<CollisionPair>* close);
   void follow(std::span<const Vec3> x0, std::span<const Vec3> x1, double separation);
   void add_colliding(const Candidates& candidates, std::span<const Vec3> x0, std::span<const Vec3> x1, double separation,
                      std::span<const std::uint8_t> moved, const std::function<bool(const CollisionPair&)>& skip,
@@ -69,8 +71,6 @@ class PairSearch {
   Candidates triangles_, edges_{{}, true};
   std::vector<std::uint8_t> far_;  // nodes whose end is further away from that than slack
   // Kept for their memory.
-  std::vector<VertexTriangle> vertex_triangle_;
-  std::vector<EdgeEdge> edge_edge_;
   std::vector<Corners> with_moved_;
   std::vector<PairImpact> impacts_;
   Offset tested_ = 0;

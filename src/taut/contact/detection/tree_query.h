@@ -2,8 +2,8 @@
 // All pairs of overlapping items of two box trees, or of one with itself, for contact/broad_phase.h. Private to contact.
 //
 // Each block of 64 items of the first tree, eight groups of eight, descends through the second down to the blocks that are near it; then
-// groups meet groups, and items items. Chunks of blocks write lists of their own, which are joined in order, so the result does not depend
-// on the number of threads.
+// groups meet groups, and items items. Each part of the result is that of a few blocks, so that parts do not depend on the number of
+// threads.
 
 #include <bit>
 #include <limits>
@@ -42,7 +42,7 @@ class TreeQuery {
 
   // Pairs of the items below group p of the first tree's level 1. blocks: working memory.
   void run(Index p, std::vector<Block>& blocks, std::vector<Pair>& pairs) const {
-    if (itself_ && restricted() && moved_first_[1][p] == 0) return;
+    if (itself_ && restricted() && moved_first_[1][p] == 0) return;  // found from the other side
     find_blocks(p, blocks);
     for (Index lane = 0; lane < first_.lanes_used(1, p); ++lane) {
       const Index q = 8 * p + lane;
@@ -76,6 +76,7 @@ class TreeQuery {
   // The groups of the second tree's level 1 that have something near group p of the first one's, in ascending order.
   void find_blocks(Index p, std::vector<Block>& blocks) const {
     blocks.clear();
+    const bool none_moved = restricted() && moved_first_[1][p] == 0;
     const MovingBox around = first_.height() > 2 ? box_of_lane(first_.group(2, p / 8), p % 8) : everything();
     struct Visit {
       int level;
@@ -93,6 +94,7 @@ class TreeQuery {
         continue;
       }
       Mask mask = overlapping(second_.group(visit.level, visit.group), around, still_);
+      if (none_moved) mask &= moved_second_[visit.level][visit.group];
       if (itself_ && !restricted()) mask &= from(p >> (3 * (visit.level - 2)), visit.group);
       // The last pushed is visited first: so from the highest lane down.
       for (Mask left = mask; left != 0;) {
@@ -136,28 +138,30 @@ class TreeQuery {
   LevelMasks moved_first_, moved_second_;
 };
 
-// found: one list a chunk, kept by the caller so that their memory is used again.
-template <int first_corners, int second_corners, class Pair, class MakePair>
-void query(const BoxTree& first, const BoxTree& second, std::span<const std::uint8_t> moved, std::vector<std::vector<Pair>>& found,
-           std::vector<Pair>& pairs, const MakePair& make_pair) {
-  pairs.clear();
+constexpr Index blocks_per_part = 4;
+
+// Parts of the list of pairs whose first item is in `first`.
+inline Index parts_of(const BoxTree& first) {
+  const Index blocks = (first.groups() + 7) / 8;
+  return (blocks + blocks_per_part - 1) / blocks_per_part;
+}
+
+// use(part, pairs) for each part, from several threads.
+template <int first_corners, int second_corners, class Pair, class MakePair, class Use>
+void query(const BoxTree& first, const BoxTree& second, std::span<const std::uint8_t> moved, const MakePair& make_pair, const Use& use) {
   if (first.items() == 0 || second.items() == 0) return;
-  constexpr Index blocks_per_chunk = 4;
   const TreeQuery<first_corners, second_corners, Pair, MakePair> tree_query(first, second, moved, make_pair);
-  const Index blocks = (first.groups() + 7) / 8, chunks = (blocks + blocks_per_chunk - 1) / blocks_per_chunk;
-  found.resize(static_cast<std::size_t>(chunks));
-  parallel_for(chunks, 1, [&](Index begin, Index end) {
+  const Index blocks = (first.groups() + 7) / 8, parts = parts_of(first);
+  parallel_for(parts, 1, [&](Index begin, Index end) {
     std::vector<Block> near;
+    std::vector<Pair> pairs;
     for (Index k = begin; k < end; ++k) {
-      const Index c = strided(k, chunks);
-      found[c].clear();
-      for (Index p = c * blocks_per_chunk; p < std::min(blocks, (c + 1) * blocks_per_chunk); ++p) tree_query.run(p, near, found[c]);
+      const Index part = strided(k, parts);
+      pairs.clear();
+      for (Index p = part * blocks_per_part; p < std::min(blocks, (part + 1) * blocks_per_part); ++p) tree_query.run(p, near, pairs);
+      use(part, std::span<const Pair>(pairs));
     }
   });
-  std::size_t total = 0;
-  for (const auto& list : found) total += list.size();
-  pairs.reserve(total);
-  for (const auto& list : found) pairs.insert(pairs.end(), list.begin(), list.end());
 }
 
 }  // namespace taut::detail
