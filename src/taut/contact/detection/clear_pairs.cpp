@@ -183,6 +183,10 @@ struct Planes {
     at_start |= now;
     throughout |= now & (least(n, end) > needed);
   }
+  TAUT_ALWAYS_INLINE bool all_clear() const {
+    const DoubleMask all = (DoubleMask)throughout;  // of either precision
+    return (all[0] & all[1] & all[2] & all[3]) == -1;
+  }
   TAUT_ALWAYS_INLINE void attempt_towards(const Lanes3<T>& n, const Lanes3<T>& side) {
     const LaneMask<T> flip = (LaneMask<T>)dot(n, side) & sign_bit<T>();
     const auto towards = [&](const Lanes<T>& a) __attribute__((always_inline)) { return (Lanes<T>)((LaneMask<T>)a ^ flip); };
@@ -240,16 +244,20 @@ TAUT_ALWAYS_INLINE void find_clear_few(const PairCorners* pairs, const Positions
     const Lanes<T> half = Lanes<T>{} + T(0.5);
     const Lanes3<T> middle = between + half * (first - second);
     planes.attempt(middle);
-    planes.attempt(orthogonal(middle, first));
-    planes.attempt(orthogonal(middle, second));
-    planes.attempt_towards(cross(first, second), middle);
+    if (!planes.all_clear()) planes.attempt_towards(cross(first, second), middle);
+    if (!planes.all_clear()) {
+      planes.attempt(orthogonal(middle, first));
+      planes.attempt(orthogonal(middle, second));
+    }
   } else {
     const Lanes<T> three = Lanes<T>{} + T(3);
     planes.attempt(three * between - (first + second));
-    planes.attempt(orthogonal(between, first));
-    planes.attempt(orthogonal(between, second));
-    planes.attempt(orthogonal(between - first, second - first));
-    planes.attempt_towards(cross(first, second), between);
+    if (!planes.all_clear()) planes.attempt_towards(cross(first, second), between);
+    if (!planes.all_clear()) {
+      planes.attempt(orthogonal(between, first));
+      planes.attempt(orthogonal(between, second));
+      planes.attempt(orthogonal(between - first, second - first));
+    }
   }
   for (int l = 0; l < lanes<T>; ++l)
     clear[l] = static_cast<std::uint8_t>((planes.at_start[l] ? clear_at_start : 0) | (planes.throughout[l] ? clear_throughout : 0));
