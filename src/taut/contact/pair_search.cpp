@@ -15,6 +15,17 @@ bool any_in(const std::array<Index, 4>& nodes, std::span<const std::uint8_t> mar
   return marked[nodes[0]] | marked[nodes[1]] | marked[nodes[2]] | marked[nodes[3]];
 }
 
+// picked: those pairs that have a marked node, or those that have none, in their order.
+void pick_pairs(std::span<const std::array<Index, 4>> pairs, std::span<const std::uint8_t> marked, bool with,
+                std::vector<std::array<Index, 4>>& picked) {
+  picked.clear();
+  const auto pick = [&](Index begin, Index end, std::vector<std::array<Index, 4>>& of_chunk) {
+    std::ranges::copy_if(pairs.subspan(begin, end - begin), std::back_inserter(of_chunk),
+                         [&](const std::array<Index, 4>& nodes) { return any_in(nodes, marked) == with; });
+  };
+  collect(static_cast<Index>(pairs.size()), 16 * chunk, pick, picked);
+}
+
 }  // namespace
 
 // Of a part of the broad phase's pairs: those that come within reach on the way to end_, and those that may be within it at the start.
@@ -100,8 +111,10 @@ void PairSearch::follow(std::span<const Vec3> x0, std::span<const Vec3> x1, doub
     any = true;
   }
   if (!any) return;
-  for (Candidates* candidates : {&triangles_, &edges_})
-    std::erase_if(candidates->pairs, [&](const Corners& pair) { return any_in(pair, far_); });
+  for (Candidates* candidates : {&triangles_, &edges_}) {
+    pick_pairs(candidates->pairs, far_, false, picked_);
+    std::swap(candidates->pairs, picked_);
+  }
   add_candidates(x0, far_, nullptr);
 }
 
@@ -110,9 +123,8 @@ void PairSearch::add_colliding(const Candidates& candidates, std::span<const Vec
                                std::vector<CollidingPair>& colliding) {
   std::span<const Corners> pairs = candidates.pairs;
   if (!moved.empty()) {
-    with_moved_.clear();
-    std::ranges::copy_if(pairs, std::back_inserter(with_moved_), [&](const Corners& pair) { return any_in(pair, moved); });
-    pairs = with_moved_;
+    pick_pairs(pairs, moved, true, picked_);
+    pairs = picked_;
   }
   tested_ += std::ssize(pairs);
   CcdOptions options;

@@ -71,7 +71,7 @@ class PairSearch {
   Candidates triangles_, edges_{{}, true};
   std::vector<std::uint8_t> far_;  // nodes whose end is further away from that than slack
   // Kept for their memory.
-  std::vector<Corners> with_moved_;
+  std::vector<Corners> picked_;
   std::vector<PairImpact> impacts_;
   Offset tested_ = 0;
 };
