@@ -57,8 +57,7 @@ class TreeQuery {
         while (mask != 0) {  // from the highest lane down, as above the blocks
           const int below = 31 - std::countl_zero(mask);
           mask &= ~(1u << below);
-          const Mask lanes = overlapping(first_.group(0, q), box_of_lane(second_.group(1, block.group), below), still_);
-          meet(q, 8 * block.group + below, lanes, pairs);
+          meet(q, block.group, below, pairs);
         }
       }
     }
@@ -111,11 +110,14 @@ class TreeQuery {
     return {{box, box}};
   }
 
-  // Those items in the given lanes of group q with the items of group g of the second tree.
-  void meet(Index q, Index g, Mask lanes, std::vector<Pair>& pairs) const {
+  // The items of group q with those of the group g of the second tree that is in lane `below` of `parent`.
+  void meet(Index q, Index parent, int below, std::vector<Pair>& pairs) const {
+    const Index g = 8 * parent + below;
+    Mask lanes = 0xff;
     if (itself_ && restricted()) lanes &= moved_first_[0][q];  // pairs with another lane are found from their other item
     std::array<std::uint8_t, 8> masks;
-    leaf_overlaps<first_corners, second_corners>(first_.leaf(q), second_.leaf(g), lanes, still_, masks.data());
+    lanes = leaf_overlaps<first_corners, second_corners>(first_.leaf(q), second_.leaf(g), second_.group(1, parent), below, lanes, still_,
+                                                         masks.data());
     for (; lanes != 0; lanes &= lanes - 1) {
       const int lane = std::countr_zero(lanes);
       Mask mask = masks[lane];
