@@ -47,11 +47,8 @@ TAUT_ALWAYS_INLINE Integers near_lane(const BoxGroup& b, const BoxGroup& a, int 
 }
 
 template <bool still>
-TAUT_ALWAYS_INLINE void boxes(const BoxGroup& mine, const BoxGroup& theirs, Mask lanes, std::uint8_t* masks) {
-  for (; lanes != 0; lanes &= lanes - 1) {
-    const int l = std::countr_zero(lanes);
-    masks[l] = static_cast<std::uint8_t>(bits_of(near_lane<still>(theirs, mine, l)));
-  }
+TAUT_ALWAYS_INLINE void boxes(const BoxGroup& mine, const BoxGroup& theirs, std::uint8_t* masks) {
+  for (int l = 0; l < 8; ++l) masks[l] = static_cast<std::uint8_t>(bits_of(near_lane<still>(theirs, mine, l)));
 }
 
 template <int my_corners, int their_corners, bool still>
@@ -75,8 +72,8 @@ TAUT_ALWAYS_INLINE Mask leaves(const LeafGroup& mine, const LeafGroup& theirs, c
                : leaves<my_corners, their_corners, false>(mine, theirs, parent, lane, lanes, masks);
 }
 
-TAUT_MULTIVERSION_AVX2 void overlaps_of_boxes(const BoxGroup& mine, const BoxGroup& theirs, Mask lanes, bool still, std::uint8_t* masks) {
-  still ? boxes<true>(mine, theirs, lanes, masks) : boxes<false>(mine, theirs, lanes, masks);
+TAUT_MULTIVERSION_AVX2 void overlaps_of_boxes(const BoxGroup& mine, const BoxGroup& theirs, bool still, std::uint8_t* masks) {
+  still ? boxes<true>(mine, theirs, masks) : boxes<false>(mine, theirs, masks);
 }
 TAUT_MULTIVERSION_AVX2 Mask overlaps_1_3(const LeafGroup& mine, const LeafGroup& theirs, const BoxGroup& parent, int lane, Mask lanes,
                                          bool still, std::uint8_t* masks) {
@@ -93,8 +90,8 @@ TAUT_MULTIVERSION_AVX2 Mask overlaps_2_3(const LeafGroup& mine, const LeafGroup&
 
 }  // namespace
 
-void group_overlaps(const BoxGroup& mine, const BoxGroup& theirs, Mask lanes, bool still, std::uint8_t* masks) {
-  overlaps_of_boxes(mine, theirs, lanes, still, masks);
+void group_overlaps(const BoxGroup& mine, const BoxGroup& theirs, bool still, std::uint8_t* masks) {
+  overlaps_of_boxes(mine, theirs, still, masks);
 }
 
 template <>

@@ -11,7 +11,8 @@
 
 namespace taut::detail {
 
-void group_overlaps(const BoxGroup& mine, const BoxGroup& theirs, Mask lanes, bool still, std::uint8_t* masks);
+// Of all eight lanes of mine.
+void group_overlaps(const BoxGroup& mine, const BoxGroup& theirs, bool still, std::uint8_t* masks);
 
 // Of leaves, without items that have a corner in common. parent, lane: where the box around theirs is. Returns those of the lanes that this
 // box overlaps: only for them masks are set. For items with `my_corners` and `their_corners` corners: 1 and 3, 2 and 2, 2 and 3.

@@ -89,7 +89,7 @@ class TreeQuery {
       if (visit.level == 1) {
         Block& block = blocks.emplace_back();
         block.group = visit.group;
-        group_overlaps(first_.group(1, p), second_.group(1, visit.group), 0xff, still_, block.masks.data());
+        group_overlaps(first_.group(1, p), second_.group(1, visit.group), still_, block.masks.data());
         continue;
       }
       Mask mask = overlapping(second_.group(visit.level, visit.group), around, still_);
