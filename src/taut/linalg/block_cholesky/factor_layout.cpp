@@ -1,5 +1,7 @@
 #include "taut/linalg/block_cholesky/factor_layout.h"
 
+#include <algorithm>
+
 #include "taut/linalg/block_cholesky/elimination_tree.h"
 
 namespace taut {
@@ -8,9 +10,8 @@ namespace {
 
 class LayoutBuilder {
  public:
-  LayoutBuilder(const SupernodeTree& tree, const AnalyzedGraph& analyzed, Index slab_rows, Index column_group,
-                Offset (*packed_size)(const FrontShape&))
-      : tree_(tree), analyzed_(analyzed), slab_rows_(slab_rows), column_group_(column_group), packed_size_(packed_size) {}
+  LayoutBuilder(const SupernodeTree& tree, const AnalyzedGraph& analyzed, const KernelSizes& sizes)
+      : tree_(tree), analyzed_(analyzed), sizes_(sizes) {}
 
   FactorLayout build() {
     layout_.front.resize(static_cast<std::size_t>(tree_.supernodes()));
@@ -28,7 +29,7 @@ class LayoutBuilder {
       shape_front(s);
       place_blocks(s);
       for (Index c = layout_.front[s].child_begin; c < layout_.front[s].child_end; ++c)
-        cut_pieces(s, layout_.front[layout_.child[c]], layout_.child[c]);
+        map_rows(layout_.child[c], layout_.front[s].shape.columns);
     }
     return std::move(layout_);
   }
@@ -56,8 +57,8 @@ class LayoutBuilder {
     f.parent = tree_.parent[s];
     f.first_node = tree_.first[s], f.last_node = tree_.first[s + 1];
     for (Index k = f.first_node; k < f.last_node; ++k) f.pivots += weight_at(k);
-    f.shape.slab_rows = slab_rows_;
-    f.shape.columns = (f.pivots + column_group_ - 1) / column_group_ * column_group_;
+    f.shape.slab_rows = sizes_.slab_rows;
+    f.shape.columns = (f.pivots + sizes_.column_group - 1) / sizes_.column_group * sizes_.column_group;
     f.shape.padding = f.shape.columns - f.pivots;
     Index next = f.shape.padding;
     for (Index k = f.first_node; k < f.last_node; ++k) {
@@ -71,7 +72,7 @@ class LayoutBuilder {
     }
     f.packed = layout_.packed_size;
     f.vector = layout_.vector_size;
-    layout_.packed_size += packed_size_(f.shape);
+    layout_.packed_size += sizes_.packed_size(f.shape);
     layout_.vector_size += f.shape.vector_size();
     const double n = f.shape.columns, m = f.shape.rows - f.shape.columns;
     layout_.flops += n * n * n / 3.0 + n * n * m + n * m * m;
@@ -89,37 +90,54 @@ class LayoutBuilder {
   }
 
   void add_block(const FrontShape& shape, Index place, Offset value) {
-    const Index row = row_of_[place], in_slab = row % slab_rows_;
-    layout_.block.push_back({place, value, row, slab_rows_ - in_slab, shape.panel_offset(row / slab_rows_) + in_slab});
+    const Index row = row_of_[place], in_slab = row % sizes_.slab_rows;
+    layout_.block.push_back({place, value, row, sizes_.slab_rows - in_slab, shape.panel_offset(row / sizes_.slab_rows) + in_slab});
   }
 
-  // How the rows of child c lie in its parent s: runs, cut at the borders of slabs and at the end of the parent's pivots.
-  void cut_pieces(Index s, Front& child, Index c) {
-    const Front& parent = layout_.front[s];
-    child.piece_begin = child.piece_split = static_cast<Index>(layout_.piece.size());
+  // How the rows of child c lie in its parent, whose rows row_of_ holds.
+  void map_rows(Index c, Index parent_columns) {
+    Front& child = layout_.front[c];
+    child.run_begin = static_cast<Index>(layout_.run.size());
+    child.spread_begin = static_cast<Index>(layout_.spread.size());
+    child.run_split = child.spread_split = -1;
     Index from = child.shape.columns;
-    for (const Index k : tree_.rows(c)) {
-      for (Index r = 0; r < weight_at(k); ++r, ++from) append_row(from, row_of_[k] + r, child.piece_begin, parent.shape.columns);
-      if (row_of_[k] < parent.shape.columns) child.piece_split = static_cast<Index>(layout_.piece.size());
-    }
-    child.piece_end = static_cast<Index>(layout_.piece.size());
+    for (const Index k : tree_.rows(c))
+      for (Index to = row_of_[k]; to < row_of_[k] + weight_at(k); ++to, ++from) {
+        append_to_runs(from, to, child.run_begin, parent_columns);
+        append_to_spreads(from, to, child.spread_begin);
+        if (to < parent_columns || child.run_split >= 0) continue;
+        child.run_split = static_cast<Index>(layout_.run.size()) - 1;
+        child.spread_split = static_cast<Index>(layout_.spread.size()) - 1;
+      }
+    child.run_end = static_cast<Index>(layout_.run.size());
+    child.spread_end = static_cast<Index>(layout_.spread.size());
+    if (child.run_split < 0) child.run_split = child.run_end, child.spread_split = child.spread_end;
   }
 
-  void append_row(Index from, Index to, Index piece_begin, Index parent_columns) {
-    auto& piece = layout_.piece;
-    const bool may_continue =
-        static_cast<Index>(piece.size()) > piece_begin && from % slab_rows_ != 0 && to % slab_rows_ != 0 && to != parent_columns;
-    if (may_continue && piece.back().to + piece.back().count == to) {
-      ++piece.back().count;
+  void append_to_runs(Index from, Index to, Index begin, Index parent_columns) {
+    auto& run = layout_.run;
+    const bool continues = static_cast<Index>(run.size()) > begin && run.back().to + run.back().count == to && to != parent_columns;
+    if (continues) {
+      ++run.back().count;
     } else {
-      piece.push_back({from, to, 1});
+      run.push_back({from, to, 1});
     }
+  }
+
+  void append_to_spreads(Index from, Index to, Index begin) {
+    auto& spread = layout_.spread;
+    const Index lanes = sizes_.lanes, register_begin = to / lanes * lanes;
+    if (static_cast<Index>(spread.size()) == begin || spread.back().to != register_begin) {
+      spread.push_back({from / lanes * lanes, register_begin, from, {}});
+      std::ranges::fill(spread.back().lane, std::int8_t{-1});
+    }
+    spread.back().lane[to - register_begin] = static_cast<std::int8_t>(from - spread.back().from);
+    spread.back().last = from;
   }
 
   const SupernodeTree& tree_;
   const AnalyzedGraph& analyzed_;
-  const Index slab_rows_, column_group_;
-  Offset (*const packed_size_)(const FrontShape&);
+  const KernelSizes sizes_;
   FactorLayout layout_;
   std::vector<Index> place_;   // of each node in the order
   std::vector<Index> row_of_;  // by place in the order: first row in the front at hand
@@ -127,14 +145,13 @@ class LayoutBuilder {
 
 }  // namespace
 
-FactorLayout make_factor_layout(const SupernodeTree& tree, const AnalyzedGraph& analyzed, Index slab_rows, Index column_group,
-                                Offset (*packed_size)(const FrontShape&)) {
-  return LayoutBuilder(tree, analyzed, slab_rows, column_group, packed_size).build();
+FactorLayout make_factor_layout(const SupernodeTree& tree, const AnalyzedGraph& analyzed, const KernelSizes& sizes) {
+  return LayoutBuilder(tree, analyzed, sizes).build();
 }
 
 Offset FactorLayout::bytes() const {
   const auto size_of = [](const auto& v) { return static_cast<Offset>(v.size() * sizeof(v[0])); };
-  return size_of(front) + size_of(child) + size_of(piece) + size_of(node) + size_of(node_weight) + size_of(node_width) +
+  return size_of(front) + size_of(child) + size_of(run) + size_of(spread) + size_of(node) + size_of(node_weight) + size_of(node_width) +
          size_of(node_column) + size_of(block_start) + size_of(block) + size_of(task);
 }
 

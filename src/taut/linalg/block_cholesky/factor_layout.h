@@ -6,8 +6,7 @@
 // elimination.
 //
 //   arena    panels, which live while their front is eliminated, and updates, which live until the parent has taken them in; later ones
-//   reuse the
-//            place, so most of this stays in a cache. Tasks that may run at the same time get places that do not overlap.
+//            reuse the place, so most of this stays in a cache. Tasks that may run at the same time get places that do not overlap.
 //   packed   panels one after the other in the order of elimination: the factor L, which the solves stream through
 //   vector   vector_size() entries a front: what the solves work on
 //
@@ -30,8 +29,10 @@ struct Front {
   Index pivots = 0;                      // unknowns, without padding
   Index first_node = 0, last_node = 0;   // places of its pivot nodes in the order
   Index child_begin = 0, child_end = 0;  // into FactorLayout::child
-  Index piece_begin = 0, piece_end = 0;  // into FactorLayout::piece: how its update enters its parent ...
-  Index piece_split = 0;                 // ... those before this one are pivots there
+  // Into FactorLayout::run and ::spread: how its rows below the pivots lie in its parent. Runs before the split are pivots there, spreads
+  // before theirs hold nothing else.
+  Index run_begin = 0, run_split = 0, run_end = 0;
+  Index spread_begin = 0, spread_split = 0, spread_end = 0;
   Offset panel = 0, update = 0;          // in the arena
   Offset packed = 0, vector = 0;
 };
@@ -54,7 +55,8 @@ struct FrontTask {
 struct FactorLayout {
   std::vector<Front> front;
   std::vector<Index> child;  // ascending for each front: the order in which updates are added
-  std::vector<RowPiece> piece;
+  std::vector<RowRun> run;
+  std::vector<RowSpread> spread;
   std::vector<Index> node;         // per place in the order: the node of A
   std::vector<Index> node_weight;  // per place in the order: its unknowns
   std::vector<Index> node_width;   // per place in the order: length of the node's row in the analysed matrix
@@ -69,9 +71,13 @@ struct FactorLayout {
   Offset bytes() const;
 };
 
-// `packed_size`: elements of a packed panel.
-FactorLayout make_factor_layout(const SupernodeTree& tree, const AnalyzedGraph& analyzed, Index slab_rows, Index column_group,
-                                Offset (*packed_size)(const FrontShape&));
+// What of the kernels the layout follows.
+struct KernelSizes {
+  Index lanes, slab_rows, column_group;
+  Offset (*packed_size)(const FrontShape&);
+};
+
+FactorLayout make_factor_layout(const SupernodeTree& tree, const AnalyzedGraph& analyzed, const KernelSizes& sizes);
 
 // Tasks and places in the arena for a number of threads.
 void plan_tasks(FactorLayout& layout, int threads);

@@ -14,8 +14,8 @@
 //   (j-columns) R + i%R
 //
 // A slab's column is a few SIMD registers; a row of a slab, read with stride R, is what the other operand of a product needs. So slabs
-// serve as both operands of every product as they are. The diagonal of L11 is stored inverted. Above the diagonal, a panel's slabs are 0
-// and an update's are undefined.
+// serve as both operands of every product as they are. The diagonal of L11 is stored inverted. Above the diagonal, an
+// eliminated panel's slabs are 0; an update's are undefined, and a panel's before.
 //
 // The solves only read L11 and L21 once, from memory: they take the packed panel, which leaves out most of what the slabs are padded with
 // and lies in the order in which it is read. Group after group of column_group pivots (without those that are padding):
@@ -67,10 +67,20 @@ struct FrontShape {
   }
 };
 
-// `count` rows from `from` on of a child's front are the rows from `to` on of its parent's; they lie within one slab of each, and within
-// either the parent's pivots or its other rows.
-struct RowPiece {
+// How the rows of a child's front lie in its parent's. Both are in the order of elimination, so what a SIMD register of the parent's rows
+// takes are consecutive rows of the child.
+//
+// `count` rows from `from` on are the parent's from `to` on, within either its pivots or its other rows.
+struct RowRun {
   std::int32_t from = 0, to = 0, count = 0;
+};
+
+// The parent's rows to ... to+lanes-1: row to+i is the child's row from+lane[i], or none of its rows where lane[i] < 0. `from` and `to` are
+// multiples of the register's lanes, and lane[i] < 2 lanes.
+struct RowSpread {
+  static constexpr std::int32_t most_lanes = 16;
+  std::int32_t from = 0, to = 0, last = 0;  // last: the last of the child's rows here
+  std::int8_t lane[most_lanes] = {};
 };
 
 struct BadPivot {
@@ -81,6 +91,7 @@ struct BadPivot {
 template <class T>
 struct FrontKernels {
   const char* instruction_set;
+  std::int32_t lanes;  // of a SIMD register; divides slab_rows
   std::int32_t slab_rows;
   std::int32_t column_group;
   std::int32_t panel_columns;  // columns eliminated before the next ones are touched; a multiple of slab_rows
@@ -93,11 +104,12 @@ struct FrontKernels {
   // U = -L21 L21ᵀ for the tiles begin ... end-1 of update_tiles(): R x R, slab after slab, from the left to the diagonal. Overwrites.
   void (*form_update)(const FrontShape& shape, const T* panel, T* update, std::int32_t begin, std::int32_t end);
 
-  // Adds a child's update to a front: the rows of pieces[k], k = row_begin ... row_end-1, in the columns of pieces[q], q = column_begin ...
-  // column_end-1, q <= k. `target` is the parent's panel if the columns are pivots there, else the parent's update. Up to R elements before
-  // and after the child's update are read (not used).
-  void (*add_update)(const FrontShape& child, const T* update, const RowPiece* pieces, std::int32_t column_begin, std::int32_t column_end,
-                     std::int32_t row_begin, std::int32_t row_end, const FrontShape& parent, T* target, bool target_is_panel);
+  // Adds a child's update to a front: in the columns of the runs, the rows of the spreads from the diagonal on. `target` is the parent's
+  // panel if the columns are pivots there, else the parent's update. What it holds above the diagonal is undefined afterwards.
+  void (*add_update)(const FrontShape& child, const T* update, const RowRun* runs, std::int32_t run_count, const RowSpread* spreads,
+                     std::int32_t spread_count, const FrontShape& parent, T* target, bool target_is_panel);
+  // Adds the rows of the spreads of a child's vector to its parent's.
+  void (*add_rows)(const RowSpread* spreads, std::int32_t count, const T* from, T* to);
 
   // Elements of a packed panel, a multiple of a cache line; its begin must lie on one.
   std::int64_t (*packed_size)(const FrontShape& shape);

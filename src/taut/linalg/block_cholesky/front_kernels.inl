@@ -1,6 +1,7 @@
 // The kernels of front_kernels.h. Included by one source per instruction set, which names its namespace in TAUT_KERNELS; the register block
 // follows from what the compiler may use. Nothing here may call an inline function of a library: see FrontShape.
 
+#include <type_traits>
 #include <utility>  // index_sequence only
 
 #include "taut/linalg/block_cholesky/front_kernels.h"
@@ -283,48 +284,77 @@ void form_update(const FrontShape& shape, const T* panel, T* update, Int begin, 
   }
 }
 
-// Adds `columns` columns of a piece; of a piece on the diagonal, column j from row j on. Whole vectors of the target are read and written;
-// what is not of the piece adds 0.
-template <class T, bool on_diagonal>
-TAUT_INLINE void add_piece(const T* source, T* target, Int first_row, Int rows, Int columns) {
-  constexpr Int r = slab_rows<T>;
-  for (Int row = first_row / lanes<T> * lanes<T>; row < first_row + rows; row += lanes<T>) {
-    const Mask<T> row_in_piece = lane_numbers<T>() + (row - first_row);
-    Mask<T> mask = (row_in_piece >= 0) & (row_in_piece < rows);
-    const T* from = source + (row - first_row);
-    T* to = target + row;
-    for (Int j = 0; j < columns; ++j, from += r, to += r) {
-      if constexpr (on_diagonal) mask &= row_in_piece >= j;
-      store<T>(to, load(to) + masked<T>(load(from), mask));
-    }
+// Rows of a child, spread over a register of its parent's.
+template <class T>
+struct Spread {
+  Mask<T> lane, is_taken;
+
+  TAUT_INLINE explicit Spread(const RowSpread& rows) {
+    std::remove_reference_t<decltype(lane[0])> numbers[lanes<T>];
+    for (Int i = 0; i < lanes<T>; ++i) numbers[i] = rows.lane[i];
+    __builtin_memcpy(&lane, numbers, sizeof lane);
+    is_taken = lane >= 0;
+  }
+  // Of the register at `from`, and the one at `next`.
+  TAUT_INLINE Vector<T> of(const T* from) const { return masked<T>(__builtin_shuffle(load(from), lane), is_taken); }
+  TAUT_INLINE Vector<T> of(const T* from, const T* next) const {
+    return masked<T>(__builtin_shuffle(load(from), load(next), lane), is_taken);
+  }
+};
+
+// Calls f(source) with what takes a spread's rows from a register and, if there are rows of two, from the next one.
+template <class T, class Function>
+TAUT_INLINE void with_sources(const RowSpread& rows, Function f) {
+  const Spread<T> spread(rows);
+  if (rows.last < rows.from + lanes<T>) {
+    f([&](const T* from, const T*) __attribute__((always_inline)) { return spread.of(from); });
+  } else {
+    f([&](const T* from, const T* next) __attribute__((always_inline)) { return spread.of(from, next); });
   }
 }
 
 template <class T>
-void add_update(const FrontShape& child, const T* update, const RowPiece* pieces, Int column_begin, Int column_end, Int row_begin,
-                Int row_end, const FrontShape& parent, T* target, bool target_is_panel) {
+void add_update(const FrontShape& child, const T* update, const RowRun* runs, Int run_count, const RowSpread* spreads, Int spread_count,
+                const FrontShape& parent, T* target, bool target_is_panel) {
   constexpr Int r = slab_rows<T>;
-  const Int column_shift = target_is_panel ? 0 : parent.columns;
-  for (Int k = row_begin > column_begin ? row_begin : column_begin; k < row_end; ++k) {
-    const RowPiece rows = pieces[k];
-    const T* from = update + child.update_offset(rows.from / r) + rows.from % r;
-    T* to = target + (target_is_panel ? parent.panel_offset(rows.to / r) : parent.update_offset(rows.to / r));
-    for (Int q = column_begin; q < column_end && q <= k; ++q) {
-      const RowPiece columns = pieces[q];
-      const T* source = from + (columns.from - child.columns) * r;
-      T* sum = to + (columns.to - column_shift) * r;
-      q == k ? add_piece<T, true>(source, sum, rows.to % r, rows.count, columns.count)
-             : add_piece<T, false>(source, sum, rows.to % r, rows.count, columns.count);
-    }
+  // Divisions by a constant.
+  const FrontShape small{child.columns, child.padding, child.rows, r}, large{parent.columns, parent.padding, parent.rows, r};
+  const auto rows_of = [&](Int row) __attribute__((always_inline)) {
+    return update + small.update_offset(row / r) + row % r - child.columns * r;
+  };
+  for (const RowSpread* rows = spreads; rows < spreads + spread_count; ++rows) {
+    const T *first = rows_of(rows->from), *second = rows_of(rows->from + lanes<T>);
+    T* sums = target + rows->to % r +
+              (target_is_panel ? large.panel_offset(rows->to / r) : large.update_offset(rows->to / r) - parent.columns * r);
+    with_sources<T>(
+        *rows, [&](auto source) __attribute__((always_inline)) {
+          for (const RowRun* run = runs; run < runs + run_count && run->from <= rows->last; ++run) {
+            const Int left = rows->last + 1 - run->from, count = run->count < left ? run->count : left;
+            const T *from = first + run->from * r, *next = second + run->from * r;
+            T* sum = sums + run->to * r;
+            for (Int j = 0; j < count; ++j, from += r, next += r, sum += r) store<T>(sum, load(sum) + source(from, next));
+          }
+        });
   }
+}
+
+template <class T>
+void add_rows(const RowSpread* spreads, Int count, const T* from, T* to) {
+  for (const RowSpread* rows = spreads; rows < spreads + count; ++rows)
+    with_sources<T>(
+        *rows, [&](auto source) __attribute__((always_inline)) {
+          const T* first = from + rows->from;
+          store<T>(to + rows->to, load(to + rows->to) + source(first, first + lanes<T>));
+        });
 }
 
 #include "taut/linalg/block_cholesky/front_solves.inl"
 
 template <class T>
 constexpr FrontKernels<T> kernels_of(const char* name) {
-  return {name,           slab_rows<T>,    group,    panel_columns<T>, &eliminate<T>, &form_update<T>,
-          &add_update<T>, &packed_size<T>, &pack<T>, &forward<T>,      &backward<T>};
+  static_assert(lanes<T> <= RowSpread::most_lanes);
+  return {name,           lanes<T>,     slab_rows<T>,    group,    panel_columns<T>, &eliminate<T>, &form_update<T>,
+          &add_update<T>, &add_rows<T>, &packed_size<T>, &pack<T>, &forward<T>,      &backward<T>};
 }
 
 }  // namespace

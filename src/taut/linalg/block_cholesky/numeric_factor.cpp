@@ -12,7 +12,7 @@ namespace taut {
 
 template <class T>
 NumericFactor<T>::NumericFactor(const SupernodeTree& tree, const AnalyzedGraph& graph, const FrontKernels<T>& kernels)
-    : kernels_(kernels), layout_(make_factor_layout(tree, graph, kernels_.slab_rows, kernels_.column_group, kernels_.packed_size)) {
+    : kernels_(kernels), layout_(make_factor_layout(tree, graph, {kernels_.lanes, kernels_.slab_rows, kernels_.column_group, kernels_.packed_size})) {
   packed_ = AlignedArray<T>(layout_.packed_size);
   vectors_[0] = AlignedArray<T>(layout_.vector_size);
   fate_.resize(layout_.front.size());
@@ -27,8 +27,7 @@ template <class T>
 void NumericFactor<T>::plan() {
   planned_threads_ = thread_count();
   plan_tasks(layout_, planned_threads_);
-  // add_update reads up to slab_rows elements around an update.
-  arena_ = AlignedArray<T>(layout_.arena_size + 2 * Offset{kernels_.slab_rows});
+  arena_ = AlignedArray<T>(layout_.arena_size);
 }
 
 template <class T>
@@ -72,7 +71,7 @@ void NumericFactor<T>::eliminate(const FactorSource& source, Index s, bool share
       fate_[s] = Fate::skipped;
       return;
     }
-  T* panel = arena_.data() + kernels_.slab_rows + front.panel;
+  T* panel = arena_.data() + front.panel;
   std::fill(panel, panel + front.shape.panel_size(), T(0));
   assemble(source, front, panel);
   add_children(front, panel, true);
@@ -87,7 +86,7 @@ template <class T>
 void NumericFactor<T>::form_update(const Front& front, const T* panel, bool shared) {
   const Index tiles = front.shape.update_tiles();
   if (tiles == 0) return;
-  T* update = arena_.data() + kernels_.slab_rows + front.update;
+  T* update = arena_.data() + front.update;
   if (shared) {
     parallel_for(tiles, 4, [&](Index begin, Index end) { kernels_.form_update(front.shape, panel, update, begin, end); });
   } else {
@@ -110,7 +109,10 @@ void NumericFactor<T>::pack(const Front& front, const T* panel, bool shared) {
 
 namespace {
 
-// Rows are taken in the order of elimination, from all over A. `diagonal` is somewhere in the row.
+// How many nodes ahead rows of A are asked for: they are taken in the order of elimination, from all over A.
+constexpr Index rows_ahead = 3;
+
+// `diagonal` is somewhere in the row.
 void prefetch_row(const double* diagonal, Index width) {
   for (Index r = 0; r < 3; ++r)
     for (Index k = -width / 2; k < width / 2; k += 8) __builtin_prefetch(diagonal + r * width + k);
@@ -123,8 +125,8 @@ void NumericFactor<T>::assemble(const FactorSource& source, const Front& front, 
   const Index r = front.shape.slab_rows;
   const auto set_one = [&](Index j) { panel[front.shape.panel_offset(j / r) + Offset{j} * r + j % r] = T(1); };
   for (Index k = front.first_node; k < front.last_node; ++k) {
-    if (k + 1 < static_cast<Index>(layout_.node.size()) && source.pattern_is_analyzed)
-      prefetch_row(source.a.values.data() + layout_.block[layout_.block_start[k + 1]].value, layout_.node_width[k + 1]);
+    if (const Index later = k + rows_ahead; later < static_cast<Index>(layout_.node.size()) && source.pattern_is_analyzed)
+      prefetch_row(source.a.values.data() + layout_.block[layout_.block_start[later]].value, layout_.node_width[later]);
     assemble_node(source, front, k, panel);
     for (Index j = dim_[k]; j < layout_.node_weight[k]; ++j) set_one(layout_.node_column[k] + j);
   }
@@ -190,10 +192,12 @@ template <class T>
 void NumericFactor<T>::add_children(const Front& front, T* target, bool target_is_panel) {
   for (Index i = front.child_begin; i < front.child_end; ++i) {
     const Front& child = layout_.front[layout_.child[i]];
-    const Index split = child.piece_split - child.piece_begin, end = child.piece_end - child.piece_begin;
-    kernels_.add_update(child.shape, arena_.data() + kernels_.slab_rows + child.update, layout_.piece.data() + child.piece_begin,
-                        target_is_panel ? 0 : split, target_is_panel ? split : end, target_is_panel ? 0 : split, end, front.shape, target,
-                        target_is_panel);
+    const T* update = arena_.data() + child.update;
+    const Index first_run = target_is_panel ? child.run_begin : child.run_split;
+    const Index end_of_runs = target_is_panel ? child.run_split : child.run_end;
+    const Index first_spread = target_is_panel ? child.spread_begin : child.spread_split;
+    kernels_.add_update(child.shape, update, layout_.run.data() + first_run, end_of_runs - first_run, layout_.spread.data() + first_spread,
+                        child.spread_end - first_spread, front.shape, target, target_is_panel);
   }
 }
 

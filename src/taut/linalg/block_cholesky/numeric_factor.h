@@ -86,8 +86,6 @@ class NumericFactor {
   // slot: of vectors_ and norm2_; 0 is the one that backward() takes.
   void forward(Index s, const FactorVectors& vectors, const double* b, int slot = 0);
   void backward(Index s, const FactorVectors& vectors, double beta, double* x);
-  void prefetch_lists(const Front* front, const FactorVectors& vectors) const;
-  void prefetch_data(const Front& front, const FactorVectors& vectors, const double* x) const;
 
   const FrontKernels<T>& kernels_;
   FactorLayout layout_;

@@ -29,8 +29,7 @@ std::vector<double> subtree_work(const FactorLayout& layout) {
 }
 
 // Places updates so that a front's own does not overlap its children's, and panels so that they overlap neither. Where children may run at
-// the same time, their whole subtrees are kept apart, with a slab between them, because add_update reads (and leaves) as much beyond an
-// update; else only their updates are.
+// the same time, their whole subtrees are kept apart; else only their updates are.
 class ArenaPlan {
  public:
   ArenaPlan(FactorLayout& layout, std::span<const std::uint8_t> is_shared)
@@ -47,7 +46,7 @@ class ArenaPlan {
       const Index p = layout_.front[s].parent;
       if (p < 0) {
         begin[s] = roots_end;
-        roots_end += peak_[s] + layout_.front[s].shape.slab_rows;
+        roots_end += peak_[s];
       } else {
         begin[s] += begin[p];
       }
@@ -69,11 +68,10 @@ class ArenaPlan {
       const Offset update_begin = next + child.update, update_end = update_begin + child.shape.update_size();
       live_.push_back({update_begin, update_end});
       peak = std::max(peak, next + peak_[c]);
-      next = is_shared_[s] ? next + peak_[c] + f.shape.slab_rows : std::max(next, update_end);
+      next = is_shared_[s] ? next + peak_[c] : std::max(next, update_end);
     }
     f.update = first_gap(f.shape.update_size());
-    const Offset updates_end = std::max(f.update + f.shape.update_size(), live_.empty() ? 0 : live_.back().second);
-    f.panel = updates_end + f.shape.slab_rows;
+    f.panel = std::max(f.update + f.shape.update_size(), live_.empty() ? 0 : live_.back().second);
     peak_[s] = std::max(peak, f.panel + f.shape.panel_size());
   }
 

@@ -8,49 +8,11 @@
 
 namespace taut {
 
-namespace {
-
-// Fronts are so small that the processor cannot look far enough ahead by itself: what the solve of a front reads beside its panel is asked
-// for while the fronts before it are worked on, index lists first, then what they lead to.
-constexpr Index lists_ahead = 6, data_ahead = 2;
-
-template <class Value>
-void prefetch_range(const Value* begin, const Value* end) {
-  for (const char* p = reinterpret_cast<const char*>(begin); p < reinterpret_cast<const char*>(end); p += 64) __builtin_prefetch(p);
-}
-
-template <class List>
-void prefetch_elements(const List& list, Index begin, Index end) {
-  prefetch_range(list.data() + begin, list.data() + end);
-}
-
-}  // namespace
-
-template <class T>
-void NumericFactor<T>::prefetch_lists(const Front* front, const FactorVectors& vectors) const {
-  __builtin_prefetch(front + (lists_ahead));
-  prefetch_elements(layout_.node_column, front->first_node, front->last_node);
-  prefetch_elements(dim_, front->first_node, front->last_node);
-  prefetch_elements(basis_of_, front->first_node, front->last_node);
-  prefetch_elements(vectors.start, front->first_node, front->last_node);
-}
-
-template <class T>
-void NumericFactor<T>::prefetch_data(const Front& front, const FactorVectors& vectors, const double* x) const {
-  const T* y = vectors_[0].data() + front.vector;
-  prefetch_range(y, y + front.shape.rows);
-  for (Index k = front.first_node; k < front.last_node; ++k) __builtin_prefetch(x + vectors.start[k]);
-}
-
 template <class T>
 void NumericFactor<T>::solve_forward(const FactorVectors& vectors, const double* b) {
   const auto up = [&](Index t) {
     const Index end = layout_.task[t].end;
-    for (Index s = layout_.task[t].begin; s < end; ++s) {
-      if (s + lists_ahead < end) prefetch_lists(&layout_.front[s + lists_ahead], vectors);
-      if (s + data_ahead < end) prefetch_data(layout_.front[s + data_ahead], vectors, b);
-      forward(s, vectors, b);
-    }
+    for (Index s = layout_.task[t].begin; s < end; ++s) forward(s, vectors, b);
   };
   run_upwards(layout_.task_tree, std::ref(up));
 }
@@ -59,15 +21,7 @@ template <class T>
 void NumericFactor<T>::solve_backward(const FactorVectors& vectors, double beta, double* x) {
   const auto down = [&](Index t) {
     const Index begin = layout_.task[t].begin;
-    for (Index s = layout_.task[t].end - 1; s >= begin; --s) {
-      if (s - lists_ahead >= begin) {
-        const Front& front = layout_.front[s - lists_ahead];
-        prefetch_elements(layout_.piece, front.piece_begin, front.piece_end);
-        prefetch_lists(&front, vectors);
-      }
-      if (s - data_ahead >= begin) prefetch_data(layout_.front[s - data_ahead], vectors, x);
-      backward(s, vectors, beta, x);
-    }
+    for (Index s = layout_.task[t].end - 1; s >= begin; --s) backward(s, vectors, beta, x);
   };
   run_downwards(layout_.task_tree, std::ref(down));
 }
@@ -98,15 +52,6 @@ TAUT_ALWAYS_INLINE const typename Quad<T>::Type& quad(const T* p) {
 template <class T>
 TAUT_ALWAYS_INLINE void copy_few(const T* from, Index count, T* to) {
   for (Index r = 0; r < count; r += 4) quad(to + r) = quad(from + r);
-}
-
-template <class T>
-TAUT_ALWAYS_INLINE void add_few(const T* from, Index count, T* to) {
-  Index r = 0;
-  for (; r + 4 <= count; r += 4) quad(to + r) += quad(from + r);
-  if (r < count) to[r] += from[r];
-  if (r + 1 < count) to[r + 1] += from[r + 1];
-  if (r + 2 < count) to[r + 2] += from[r + 2];
 }
 
 // x may be anything where beta is 0.
@@ -151,11 +96,7 @@ void NumericFactor<T>::forward(Index s, const FactorVectors& vectors, const doub
   }
   for (Index i = front.child_begin; i < front.child_end; ++i) {
     const Front& child = layout_.front[layout_.child[i]];
-    const T* from = all + child.vector;
-    for (Index q = child.piece_begin; q < child.piece_end; ++q) {
-      const RowPiece& piece = layout_.piece[q];
-      add_few(from + piece.from, piece.count, y + piece.to);
-    }
+    kernels_.add_rows(layout_.spread.data() + child.spread_begin, child.spread_end - child.spread_begin, all + child.vector, y);
   }
   kernels_.forward(front.shape, packed_.data() + front.packed, y);
   norm2_[slot][s] = norm2_of_entries(y + front.shape.padding, y + front.shape.columns);
@@ -167,9 +108,9 @@ void NumericFactor<T>::backward(Index s, const FactorVectors& vectors, double be
   T* y = vectors_[0].data() + front.vector;
   if (front.parent >= 0) {
     const T* from = vectors_[0].data() + layout_.front[front.parent].vector;
-    for (Index q = front.piece_begin; q < front.piece_end; ++q) {
-      const RowPiece& piece = layout_.piece[q];
-      copy_few(from + piece.to, piece.count, y + piece.from);  // what is too much is written over by the next
+    for (Index q = front.run_begin; q < front.run_end; ++q) {
+      const RowRun& run = layout_.run[q];
+      copy_few(from + run.to, run.count, y + run.from);  // what is too much is written over by the next
     }
   }
   kernels_.backward(front.shape, packed_.data() + front.packed, y);
