@@ -52,12 +52,12 @@ MethodWork incomplete_work(const SystemSize& size, double nonzeros, double prepa
 }
 
 MethodWork core_work(const SystemSize& size, const FactorSize& factor, double preparations) {
-  const double once = 0.5 * work_rates.factor * factor.flops + work_rates.factor_entry * factor.nonzeros;
+  const double once = 0.5 * (work_rates.factor * factor.flops + work_rates.factor_entry * factor.nonzeros);
   return {once * (1.0 + 2.0 * (preparations - 1.0)), loop_work(size) + factor_solve_work(size, factor)};
 }
 
 MethodWork direct_work(const FactorSize& factor) {
-  return {work_rates.factor * factor.flops + (work_rates.factor_entry + work_rates.factor_solve) * factor.nonzeros, 0.0};
+  return {work_rates.factor * factor.flops + (work_rates.factor_entry + 2.0 * work_rates.factor_solve) * factor.nonzeros, 0.0};
 }
 
 }  // namespace taut

@@ -16,10 +16,10 @@ struct WorkRates {
   double reduce = 1.0 / 3.4e9;             // forming Ã: its bytes
   double incomplete = 1.0 / 11e9;          // IC(0)'s solves: bytes of the matrix it is made from; each row waits for the last
   double incomplete_setup = 1.0 / 1.45e9;  // IC(0)'s factorisation: the same bytes
-  double factor = 1.0 / 95e9;              // Cholesky factorisation, operations; in single precision half of it
-  double factor_entry = 2.3e-9;            // ... and its entries: small fronts are moved more than multiplied
-  double factor_solve = 0.38e-9;           // its two triangular solves: entries of the factor ...
-  double factor_node = 58e-9;              // ... and nodes
+  double factor = 1.0 / 105e9;             // Cholesky factorisation, operations; in single precision half of it
+  double factor_entry = 2.5e-9;            // ... and its entries, likewise: small fronts are moved more than multiplied
+  double factor_solve = 0.235e-9;          // its two triangular solves: entries of the factor in single precision ...
+  double factor_node = 36e-9;              // ... and nodes
 };
 inline constexpr WorkRates work_rates{};
 
