@@ -128,13 +128,14 @@ void add_integrators(CLI::App& parent, int& exit_code) {
 
 void add_contact(CLI::App& parent, int& exit_code) {
   const auto [verb, arguments] =
-      add_bench(parent, "contact", "What contact costs a step, by phase; or --stress: every contact scene and jittered copies", bench_contact,
-                exit_code);
+      add_bench(parent, "contact", "What contact costs a step, by phase; or --stress: every contact scene and jittered copies",
+                bench_contact, exit_code);
   verb->add_flag("--full", arguments->options.full, "clump with 25,921 nodes, as in the paper (default 6,561)");
   verb->add_option("--nodes", arguments->options.nodes, "Nodes of both sheets, a square number")->expected(1)->check(above(0));
   verb->add_option("--stress", arguments->options.stress, "Run each contact scene and this many jittered copies, and report how they end")
       ->check(between(0, 1000));
-  verb->add_option("--frames", arguments->options.stress_frames, "Of each such run, whatever the scene says (default 200)")->check(above(0));
+  verb->add_option("--frames", arguments->options.stress_frames, "Of each such run, whatever the scene says (default 200)")
+      ->check(above(0));
   verb->add_option("--scene", arguments->options.methods, "Only these scenes of the stress test")->delimiter(',');
   verb->add_option("--judge", arguments->options.judge,
                    "Let this program judge every frame of the stress test (the tests' build has one: tests/contact/judge/judge)");

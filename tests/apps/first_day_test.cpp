@@ -252,8 +252,9 @@ TEST(FirstDay, NothingIsAdvisedForAPinInsideASolidThatDoesNotHelp) {
 TEST(FirstDay, AStepThatFailsComesWithAdvice) {
   const WorkFolder folder;
   folder.file("small.toml", small_scene());
-  const ProgramEnd end = taut(folder, {"run", "small.toml", "--out", "r", "--quiet", "--no-picture", "--set", "time.integrator=newton", "--set",
-                                       "time.newton_max_iterations=1", "--set", "time.newton_tolerance=1e-12", "--set", "time.max_halvings=0"});
+  const ProgramEnd end =
+      taut(folder, {"run", "small.toml", "--out", "r", "--quiet", "--no-picture", "--set", "time.integrator=newton", "--set",
+                    "time.newton_max_iterations=1", "--set", "time.newton_tolerance=1e-12", "--set", "time.max_halvings=0"});
   expect_said(end, 1, {"Newton's method stopped after 1", "time.newton_max_iterations", "time.step smaller"});
 }
 

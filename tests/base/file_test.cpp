@@ -94,7 +94,12 @@ TEST(WriteFile, FolderThatIsAFileIsRefused) {
 TEST(ReadFile, NamesWhatItCannotRead) {
   const TemporaryFolder folder;
   const std::string missing = input_error([&] { read_file(folder / "none"); });
-  EXPECT_TRUE(names(missing, (folder / "none").string()) && names(missing, "No such file")) << missing;
+  EXPECT_TRUE(names(missing, (folder / "none").string()) && names(missing, "there is no such file")) << missing;
+  folder.file("scene.toml", "");
+  const std::string misspelt = input_error([&] { read_file(folder / "scen.toml"); });
+  EXPECT_TRUE(names(misspelt, "did you mean '" + (folder / "scene.toml").string() + "'")) << misspelt;
+  const std::string nowhere = input_error([&] { read_file(folder / "no/scene.toml"); });
+  EXPECT_TRUE(names(nowhere, "there is no folder '" + (folder / "no").string() + "'")) << nowhere;
   const std::string is_folder = input_error([&] { read_file(folder / ""); });
   EXPECT_TRUE(names(is_folder, "it is a folder")) << is_folder;
 }

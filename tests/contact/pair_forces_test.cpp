@@ -44,7 +44,8 @@ TEST(PairForces, ManyRowsAreAllFound) {
   std::mt19937 random(3);
   std::uniform_int_distribution<Index> vertex(0, 499);
   std::vector<ContactRow> rows;
-  for (Index k = 0; k < 9000; ++k) rows.push_back(row_of({vertex(random), vertex(random), vertex(random), 500 + k}, 1.0 + k, Vec3::UnitY()));
+  for (Index k = 0; k < 9000; ++k)
+    rows.push_back(row_of({vertex(random), vertex(random), vertex(random), 500 + k}, 1.0 + k, Vec3::UnitY()));
   const std::vector<PairForce> list = forces_of(rows, 1.0, 10'000);
   const PairForces forces(list, 10'000);
   for (const ContactRow& row : rows) ASSERT_EQ(forces.of(row.node), Vec3(0, row.lambda, 0));

@@ -166,7 +166,9 @@ TEST(ReadPly, RefusesWithThePlace) {
       {binary.substr(0, binary.size() - 1), "face 1: a list of 3 numbers, which is more than the rest of the file holds"},
       {replaced(binary, "vertex 5", "vertex 2000000000"), "before all elements"},
       {far_index, fmt::format("face 1 names vertex 5, 0 to 4 was expected (byte {})", binary.size() - 3)},
-      {nan_vertex, fmt::format("vertex 1: x is nan, a finite number was expected; mend this vertex in the program that wrote the file (byte {})", header.size() + 26)}};
+      {nan_vertex,
+       fmt::format("vertex 1: x is nan, a finite number was expected; mend this vertex in the program that wrote the file (byte {})",
+                   header.size() + 26)}};
   for (const auto& [bytes, said] : bad) {
     const std::filesystem::path path = folder.file("bad.ply", bytes);
     try {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <set>
 
 #include "taut/scene/scene_file.h"
 #include "taut/scene/simulation.h"
@@ -30,7 +29,6 @@ thickness = 1e-3
 
 TEST(AutoScene, SolvesEveryRegime) {
   constexpr double tolerance = 1e-4;
-  std::set<std::string> methods;
   int contacts = 0, with_bound = 0;
   for (const double h : {1e-3, 3.67e-3, 16.7e-3, 33e-3})
     for (const auto& [k_shear, k_bend] : {std::pair{0.3, 0.05}, std::pair{30.0, 5.0}, std::pair{600.0, 50.0}})
@@ -65,11 +63,9 @@ TEST(AutoScene, SolvesEveryRegime) {
           if (h * h * k_stretch < 1e8 * 4e-5) {
             EXPECT_EQ(record.fallbacks, 0);  // beyond, single precision may not do
           }
-          methods.insert(record.solver);
           contacts += record.contacts;
         }
       }
-  EXPECT_GE(methods.size(), 2u);
   EXPECT_GT(with_bound, 50);
   EXPECT_GT(contacts, 100) << "the ball never arrives";
 }

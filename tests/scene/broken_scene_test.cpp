@@ -119,6 +119,7 @@ std::vector<Broken> broken_scenes() {
       {"velocity_and_path", ball + "velocity = [1, 0, 0]\nkey_frames = [{ time = 0 }]\n", "7:1", {"only for a solid without key_frames"}},
       {"scale_of_a_grid", sheet + "scale = 0.01\n", "4:1", {"scale is only for a cloth with mesh"}},
       {"cap_without_choi_ko", sheet + "bend_cap = 5\n", "4:1", {"bend_cap is only for bend_model choi_ko"}},
+      {"name_with_folder", sheet + "name = \"front/left\"\n", "4:8", {"'front/left' becomes part of file names"}},
       {"same_name", sheet + "name = \"a\"\n" + sheet + "name = \"a\"\n", "1:1", {"two entries are named 'a'"}},
       {"pin_without_cloth", sheet + "[[pin]]\nedges = [\"u0\"]\n", "4:3", {"unknown key 'pin' at the top level", "write [[cloth.pin]]"}},
       // Names.

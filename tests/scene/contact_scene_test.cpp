@@ -153,7 +153,8 @@ TEST(ContactSimulation, NodesOfZonesAreEliminatedInTheNextStep) {
   };
   ASSERT_TRUE(simulation.step(record).ok());
   EXPECT_EQ(eliminated, static_cast<int>(held.size()));
-  for (const Index node : held) EXPECT_EQ(std::ranges::count(simulation.surface_contact()->state().zones.node, node), 0) << "held twice in a row";
+  for (const Index node : held)
+    EXPECT_EQ(std::ranges::count(simulation.surface_contact()->state().zones.node, node), 0) << "held twice in a row";
 }
 
 const std::string thrown = R"(

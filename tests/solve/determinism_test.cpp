@@ -17,7 +17,8 @@ class Determinism : public testing::TestWithParam<std::string> {
   const int before_ = thread_count();
 };
 
-INSTANTIATE_TEST_SUITE_P(All, Determinism, testing::ValuesIn(solvers_to_test()), [](const auto& solver) { return test_name(solver.param); });
+INSTANTIATE_TEST_SUITE_P(All, Determinism, testing::ValuesIn(solvers_to_test()),
+                         [](const auto& solver) { return test_name(solver.param); });
 
 const ConstrainedCase& strip() {
   static const ConstrainedCase built = [] {

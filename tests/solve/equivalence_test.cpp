@@ -143,9 +143,8 @@ TEST(ChoiceOfU, LeavesTheConditionNumberAlone) {
 TEST(ChoiceOfU, IsSeenByTheReducedScalarDiagonalOnly) {
   const ConstrainedCase duff = stiff_case(1), eq13 = stiff_case(1, FrameChoice::paper_eq13);
   const auto difference = [&](const std::string& name) { return largest_difference(solved(duff, name, 1e-6), solved(eq13, name, 1e-6)); };
-  for (const std::string name :
-       {"mpcg:diagonal", "mpcg:block_diagonal", "upcg:diagonal", "upcg:block_diagonal", "upcg:projected_block_diagonal", "ppcg",
-        "upcg:ic0", "upcg:ic0_core", "upcg:ssor"})
+  for (const std::string name : {"mpcg:diagonal", "mpcg:block_diagonal", "upcg:diagonal", "upcg:block_diagonal",
+                                 "upcg:projected_block_diagonal", "ppcg", "upcg:ic0", "upcg:ic0_core", "upcg:ssor"})
     EXPECT_LT(difference(name), 1e-9) << name;
   EXPECT_GT(difference("upcg:reduced_diagonal"), 1e-5);
 }

@@ -83,8 +83,9 @@ nlohmann::ordered_json to_json(const MachineFacts& facts) {
 }
 
 std::string to_line(const MachineFacts& facts) {
-  return fmt::format("{}, {} processors, {:.0f} GB, {}; {} thread{}{}", facts.processor, facts.processors, facts.memory_GB, facts.instruction_set, facts.threads,
-                     facts.threads == 1 ? "" : "s", facts.read_GB_per_s > 0.0 ? fmt::format(", reads {:.1f} GB/s", facts.read_GB_per_s) : "");
+  return fmt::format("{}, {} processors, {:.0f} GB, {}; {} thread{}{}", facts.processor, facts.processors, facts.memory_GB,
+                     facts.instruction_set, facts.threads, facts.threads == 1 ? "" : "s",
+                     facts.read_GB_per_s > 0.0 ? fmt::format(", reads {:.1f} GB/s", facts.read_GB_per_s) : "");
 }
 
 }  // namespace taut::app

@@ -160,8 +160,12 @@ Figure contact_figure(const Json& rows, const std::string& machine) {
     Panel panel;
     panel.title = scene;
     panel.x = {"time, s"}, panel.y = {"ms a step"};
-    for (const auto& [key, name] : {std::pair("near_ms", "near pairs"), {"impulse_ms", "impulses"}, {"detect_ms", "continuous detection"},
-                                    {"zone_ms", "rigid zones"}, {"contact_ms", "all contact"}, {"check_ms", "check for intersections"}}) {
+    for (const auto& [key, name] : {std::pair("near_ms", "near pairs"),
+                                    {"impulse_ms", "impulses"},
+                                    {"detect_ms", "continuous detection"},
+                                    {"zone_ms", "rigid zones"},
+                                    {"contact_ms", "all contact"},
+                                    {"check_ms", "check for intersections"}}) {
       Curve curve{name, {}, CurveStyle::line};
       for (const Json& row : rows)
         if (text(row, "scene") == scene) curve.points.push_back({number(row, "time"), number(row, key)});
@@ -217,8 +221,9 @@ Figure bench_figure(const Json& report) {
   throw InputError(
       bench.empty()
           ? "the report does not say of which bench it is (\"bench\"), so it cannot be drawn"
-          : fmt::format("there is no figure for the bench '{}'; there are some for table1, table2, flatness, scale, integrators, contact and solve",
-                        bench));
+          : fmt::format(
+                "there is no figure for the bench '{}'; there are some for table1, table2, flatness, scale, integrators, contact and solve",
+                bench));
 }
 
 }  // namespace taut::app

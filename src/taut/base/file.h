@@ -14,7 +14,8 @@ namespace taut {
 void write_file(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write);
 void write_file(const std::filesystem::path& path, std::string_view content);
 
-// The whole file as bytes. Throws InputError("PATH: cannot be read: REASON") when it is missing, a folder or not readable.
+// The whole file as bytes. Throws InputError("PATH: cannot be read: REASON") when it is a folder or not readable; of a missing one it says
+// what may have been meant.
 std::string read_file(const std::filesystem::path& path);
 
 }  // namespace taut

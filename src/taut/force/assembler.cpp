@@ -95,7 +95,9 @@ std::vector<std::uint8_t> Assembler::core_mask(ForceClass core_class) const {
 std::vector<double> Assembler::block_bounds(double matrix_stiffness, double matrix_damping) const {
   std::vector<double> own(static_cast<std::size_t>(block_base_.back())), bounds(static_cast<std::size_t>(pattern_->blocks()), 0.0);
   for (std::size_t m = 0; m < models_.size(); ++m)
-    if (implicit_[m]) models_[m]->bound_blocks(matrix_stiffness, matrix_damping, std::span(own).subspan(block_base_[m], block_base_[m + 1] - block_base_[m]));
+    if (implicit_[m])
+      models_[m]->bound_blocks(matrix_stiffness, matrix_damping,
+                               std::span(own).subspan(block_base_[m], block_base_[m + 1] - block_base_[m]));
   for (Index i = 0; i < pattern_->rows(); ++i)
     for (Index k = pattern_->row_start[i]; k < pattern_->row_start[i + 1]; ++k) {
       if (k == pattern_->diagonal[i]) continue;
@@ -145,8 +147,10 @@ void Assembler::assemble(std::span<const ForceRequest> requests, const Diagonal&
   assert(requests.size() == models_.size() && a.pattern == pattern_ && static_cast<Index>(b.size()) == pattern_->rows());
   for (std::size_t m = 0; m < models_.size(); ++m) {
     assert(implicit_[m] || !requests[m].wants_matrix());
-    const auto block_part = std::span(blocks_).subspan(9 * static_cast<std::size_t>(block_base_[m]), 9 * static_cast<std::size_t>(block_base_[m + 1] - block_base_[m]));
-    const auto vector_part = std::span(vectors_).subspan(static_cast<std::size_t>(vector_base_[m]), static_cast<std::size_t>(vector_base_[m + 1] - vector_base_[m]));
+    const auto block_part = std::span(blocks_).subspan(9 * static_cast<std::size_t>(block_base_[m]),
+                                                       9 * static_cast<std::size_t>(block_base_[m + 1] - block_base_[m]));
+    const auto vector_part = std::span(vectors_).subspan(static_cast<std::size_t>(vector_base_[m]),
+                                                         static_cast<std::size_t>(vector_base_[m + 1] - vector_base_[m]));
     // An implicit model left out of this matrix (a dump of one class) must not leave its last numbers behind.
     if (implicit_[m] && !requests[m].wants_matrix()) std::ranges::fill(block_part, 0.0);
     models_[m]->evaluate(requests[m], block_part, vector_part);
@@ -157,8 +161,10 @@ void Assembler::assemble(std::span<const ForceRequest> requests, const Diagonal&
       Vec3 sum = Vec3::Zero();
       for (Index c = vector_start_[i]; c < vector_start_[i + 1]; ++c) {
         const Contribution from = vector_list_[c];
-        if (from.negative()) sum -= vectors_[from.id()];
-        else sum += vectors_[from.id()];
+        if (from.negative())
+          sum -= vectors_[from.id()];
+        else
+          sum += vectors_[from.id()];
       }
       b[i] = sum;
     }

@@ -17,29 +17,39 @@ SpringLawKind law_of(ForceClass force_class, const SpringMaterial& m) {
 SpringParameters parameters_of(ForceClass force_class, const SpringMaterial& m) {
   SpringParameters p;
   switch (force_class) {
-    case ForceClass::shear: p.stiffness = m.k_shear, p.damping = m.k_damp_shear; break;
+    case ForceClass::shear:
+      p.stiffness = m.k_shear, p.damping = m.k_damp_shear;
+      break;
     case ForceClass::bend:
       p.stiffness = m.k_bend, p.damping = m.k_damp_bend;
       p.cap = m.bend_cap > 0.0 ? m.bend_cap : m.k_stretch;
       break;
-    default: p.stiffness = m.k_stretch, p.damping = m.k_damp_stretch; break;
+    default:
+      p.stiffness = m.k_stretch, p.damping = m.k_damp_stretch;
+      break;
   }
   return p;
 }
 
 class SpringCollector {
  public:
-  SpringCollector(ForceClass force_class, std::span<const Vec3> rest, const SpringMaterial& material, Index first_node, const std::string& cloth)
-      : class_(force_class), rest_(rest), law_(law_of(force_class, material)), parameters_(parameters_of(force_class, material)),
-        first_node_(first_node), cloth_(cloth) {}
+  SpringCollector(ForceClass force_class, std::span<const Vec3> rest, const SpringMaterial& material, Index first_node,
+                  const std::string& cloth)
+      : class_(force_class),
+        rest_(rest),
+        law_(law_of(force_class, material)),
+        parameters_(parameters_of(force_class, material)),
+        first_node_(first_node),
+        cloth_(cloth) {}
 
   void join(Index i, Index j) {
     SpringParameters p = parameters_;
     p.rest_length = (rest_[j] - rest_[i]).norm();
     if (!(p.rest_length > 0.0))
-      throw InputError(fmt::format("cloth '{}': vertices {} and {} are joined by a {} spring but lie in the same place ({:.6g}, {:.6g}, {:.6g}); "
-                                   "merge them or move them apart",
-                                   cloth_, i + 1, j + 1, name_of(class_), rest_[i].x(), rest_[i].y(), rest_[i].z()));
+      throw InputError(
+          fmt::format("cloth '{}': vertices {} and {} are joined by a {} spring but lie in the same place ({:.6g}, {:.6g}, {:.6g}); "
+                      "merge them or move them apart",
+                      cloth_, i + 1, j + 1, name_of(class_), rest_[i].x(), rest_[i].y(), rest_[i].z()));
     springs_.push_back({first_node_ + i, first_node_ + j, p});
   }
   void deliver_to(std::vector<std::unique_ptr<SpringModel>>& models) {
@@ -58,10 +68,10 @@ class SpringCollector {
 
 }  // namespace
 
-std::vector<std::unique_ptr<SpringModel>> grid_springs(const GridShape& g, std::span<const Vec3> rest, const SpringMaterial& material, Index first_node,
-                                                       const std::string& cloth_name) {
-  SpringCollector stretch(ForceClass::stretch, rest, material, first_node, cloth_name), shear(ForceClass::shear, rest, material, first_node, cloth_name),
-      bend(ForceClass::bend, rest, material, first_node, cloth_name);
+std::vector<std::unique_ptr<SpringModel>> grid_springs(const GridShape& g, std::span<const Vec3> rest, const SpringMaterial& material,
+                                                       Index first_node, const std::string& cloth_name) {
+  SpringCollector stretch(ForceClass::stretch, rest, material, first_node, cloth_name),
+      shear(ForceClass::shear, rest, material, first_node, cloth_name), bend(ForceClass::bend, rest, material, first_node, cloth_name);
   for (Index j = 0; j < g.nv; ++j)
     for (Index i = 0; i < g.nu; ++i) {
       const bool right = i + 1 < g.nu, up = j + 1 < g.nv;

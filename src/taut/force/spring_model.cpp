@@ -9,10 +9,14 @@ namespace taut {
 
 const char* name_of(ForceClass force_class) {
   switch (force_class) {
-    case ForceClass::stretch: return "stretch";
-    case ForceClass::shear: return "shear";
-    case ForceClass::bend: return "bend";
-    case ForceClass::contact: return "contact";
+    case ForceClass::stretch:
+      return "stretch";
+    case ForceClass::shear:
+      return "shear";
+    case ForceClass::bend:
+      return "bend";
+    case ForceClass::contact:
+      return "contact";
   }
   return "unknown";
 }
@@ -94,9 +98,12 @@ void SpringModel::connect(ConnectionSink& sink) const {
 void SpringModel::evaluate(const ForceRequest& request, std::span<double> blocks, std::span<Vec3> vectors) const {
   parallel_for(block_count(), springs_per_task, [&](Index begin, Index end) {
     switch (law_) {
-      case SpringLawKind::linear: return evaluate_range<SpringLawKind::linear>(springs_, request, blocks.data(), vectors.data(), begin, end);
-      case SpringLawKind::buckling: return evaluate_range<SpringLawKind::buckling>(springs_, request, blocks.data(), vectors.data(), begin, end);
-      case SpringLawKind::choi_ko: return evaluate_range<SpringLawKind::choi_ko>(springs_, request, blocks.data(), vectors.data(), begin, end);
+      case SpringLawKind::linear:
+        return evaluate_range<SpringLawKind::linear>(springs_, request, blocks.data(), vectors.data(), begin, end);
+      case SpringLawKind::buckling:
+        return evaluate_range<SpringLawKind::buckling>(springs_, request, blocks.data(), vectors.data(), begin, end);
+      case SpringLawKind::choi_ko:
+        return evaluate_range<SpringLawKind::choi_ko>(springs_, request, blocks.data(), vectors.data(), begin, end);
     }
   });
 }
@@ -126,12 +133,14 @@ double largest_strain(const SpringModel& model, std::span<const Vec3> x) {
     Largest& operator+=(const Largest& other) { return value = std::max(value, other.value), *this; }
   };
   const auto springs = model.springs();
-  return ordered_sum<Largest>(static_cast<Index>(springs.size()), [&](Index begin, Index end) {
-    Largest largest;
-    for (Index s = begin; s < end; ++s)
-      largest += Largest{(x[springs[s].j] - x[springs[s].i]).norm() / springs[s].parameters.rest_length - 1.0};
-    return largest;
-  }).value;
+  return ordered_sum<Largest>(static_cast<Index>(springs.size()),
+                              [&](Index begin, Index end) {
+                                Largest largest;
+                                for (Index s = begin; s < end; ++s)
+                                  largest += Largest{(x[springs[s].j] - x[springs[s].i]).norm() / springs[s].parameters.rest_length - 1.0};
+                                return largest;
+                              })
+      .value;
 }
 
 std::vector<double> spring_strains(const SpringModel& model, std::span<const Vec3> x) {

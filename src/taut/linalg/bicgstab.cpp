@@ -69,7 +69,8 @@ struct Run {
 
 }  // namespace
 
-KrylovResult bicgstab(const LinearOperator& a, const Preconditioner& m, std::span<const double> b, std::span<double> x, const KrylovOptions& options) {
+KrylovResult bicgstab(const LinearOperator& a, const Preconditioner& m, std::span<const double> b, std::span<double> x,
+                      const KrylovOptions& options) {
   const std::size_t n = static_cast<std::size_t>(a.size());
   assert(b.size() == n && x.size() == n);
   KrylovResult result;

@@ -27,7 +27,8 @@ std::filesystem::path found(const std::filesystem::path& path, const std::filesy
 
 }  // namespace
 
-MeshSolid::MeshSolid(const Solid& solid, const std::filesystem::path& folder) : solid_(solid), mesh_(read_mesh(found(solid.mesh, folder), solid.prim)) {
+MeshSolid::MeshSolid(const Solid& solid, const std::filesystem::path& folder)
+    : solid_(solid), mesh_(read_mesh(found(solid.mesh, folder), solid.prim)) {
   const MeshFaults faults = find_faults(mesh_);
   for (const Index triangle : faults.repeated_vertex)
     throw InputError({found(solid.mesh, folder).string()}, "triangle " + std::to_string(triangle + 1) + " names a vertex twice; remove it");

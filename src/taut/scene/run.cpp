@@ -15,9 +15,12 @@ namespace taut {
 
 const char* name_of(RunEnd end) {
   switch (end) {
-    case RunEnd::finished: return "finished";
-    case RunEnd::interrupted: return "interrupted";
-    case RunEnd::failed: return "failed";
+    case RunEnd::finished:
+      return "finished";
+    case RunEnd::interrupted:
+      return "interrupted";
+    case RunEnd::failed:
+      return "failed";
   }
   return "unknown";
 }
@@ -59,23 +62,24 @@ void note_stretch(RunSummary& summary, const StepRecord& r, const Simulation& si
 }
 
 std::string worst_place(const RunSummary& s) {
-  return fmt::format("{:.4g} % between nodes {} and {} of cloth '{}' in step {} (t = {:.4g} s)", 100.0 * s.worst_stretch.stretch, s.worst_stretch.i,
-                     s.worst_stretch.j, s.worst_stretch.cloth, s.worst_step, s.worst_time);
+  return fmt::format("{:.4g} % between nodes {} and {} of cloth '{}' in step {} (t = {:.4g} s)", 100.0 * s.worst_stretch.stretch,
+                     s.worst_stretch.i, s.worst_stretch.j, s.worst_stretch.cloth, s.worst_step, s.worst_time);
 }
 
 void warn(RunSummary& s, const TimeOptions& time) {
   constexpr double twice_its_length = 1.0;
   if (s.overshoots.torn_steps > 0)
-    s.warnings.push_back(
-        fmt::format("the result is not to be trusted from step {} on: in {} of {} steps springs ended up to {:.3g} % of their length beyond what the "
-                    "step foresaw, although steps were halved {} times. Worst stretch: {}. Make pins and solids that pull there slower, or time.step "
-                    "smaller, or allow more halvings (time.max_halvings)",
-                    s.overshoots.first_torn, s.overshoots.torn_steps, s.steps, 100.0 * s.overshoots.largest, time.max_halvings, worst_place(s)));
+    s.warnings.push_back(fmt::format(
+        "the result is not to be trusted from step {} on: in {} of {} steps springs ended up to {:.3g} % of their length beyond what the "
+        "step foresaw, although steps were halved {} times. Worst stretch: {}. Make pins and solids that pull there slower, or time.step "
+        "smaller, or allow more halvings (time.max_halvings)",
+        s.overshoots.first_torn, s.overshoots.torn_steps, s.steps, 100.0 * s.overshoots.largest, time.max_halvings, worst_place(s)));
   // Integrators that foresee nothing, and steps that may not be halved, end here.
   else if (s.max_stretch > twice_its_length)
-    s.warnings.push_back(fmt::format("springs were stretched to more than twice their length, as no fabric is: {}. Unless that is meant, make pins and "
-                                     "solids that pull there slower, raise k_stretch, or make time.step smaller",
-                                     worst_place(s)));
+    s.warnings.push_back(
+        fmt::format("springs were stretched to more than twice their length, as no fabric is: {}. Unless that is meant, make pins and "
+                    "solids that pull there slower, raise k_stretch, or make time.step smaller",
+                    worst_place(s)));
 }
 
 // What to do about a step that failed.
@@ -96,7 +100,8 @@ std::string advice(const Status& status, const Simulation& simulation) {
 
 void finish_means(RunSummary& summary) {
   if (summary.steps == 0) return;
-  for (double* mean : {&summary.mean_step_ms, &summary.mean_iterations, &summary.mean_assemble_ms, &summary.mean_solver_ms, &summary.mean_contact_ms})
+  for (double* mean :
+       {&summary.mean_step_ms, &summary.mean_iterations, &summary.mean_assemble_ms, &summary.mean_solver_ms, &summary.mean_contact_ms})
     *mean /= summary.steps;
 }
 
@@ -138,17 +143,22 @@ void write_summary(const RunSummary& s, const Simulation& simulation, const Resu
                               {"peak_memory_MB", s.peak_memory_MB},
                               {"taut_version", TAUT_VERSION}};
   if (const UntangleReport* untangled = untangling(simulation))
-    json["untangled"] = {{"intersections", untangled->intersections_before}, {"inside_solids", untangled->inside_solids_before},
-                         {"passes", untangled->passes},                      {"nodes_moved", untangled->moved},
-                         {"largest_m", untangled->largest},                  {"mean_m", untangled->mean},
-                         {"stretch_before", untangled->stretch_before},      {"stretch_after", untangled->stretch_after},
+    json["untangled"] = {{"intersections", untangled->intersections_before},
+                         {"inside_solids", untangled->inside_solids_before},
+                         {"passes", untangled->passes},
+                         {"nodes_moved", untangled->moved},
+                         {"largest_m", untangled->largest},
+                         {"mean_m", untangled->mean},
+                         {"stretch_before", untangled->stretch_before},
+                         {"stretch_after", untangled->stretch_after},
                          {"gap_m", untangled->gap}};
   write_file(results.summary_file(), json.dump(2) + "\n");
 }
 
 }  // namespace
 
-RunSummary run(Simulation& simulation, const ResultsFolder& results, RunObserver& observer, const std::atomic<bool>& interrupt, int first_frame) {
+RunSummary run(Simulation& simulation, const ResultsFolder& results, RunObserver& observer, const std::atomic<bool>& interrupt,
+               int first_frame) {
   Timer timer;
   const TimeOptions& time = simulation.scene().time;
   const int steps_total = time.frames * time.steps_per_frame;
@@ -160,8 +170,7 @@ RunSummary run(Simulation& simulation, const ResultsFolder& results, RunObserver
   std::filesystem::remove(results.summary_file());
   results.remove_frames_after(first_frame);
   if (first_frame == 0) results.write_frame(0, simulation.state().x, node_contact(simulation));
-  if (const UntangleReport* untangled = untangling(simulation); untangled && first_frame == 0)
-    observer.on_message(describe(*untangled));
+  if (const UntangleReport* untangled = untangling(simulation); untangled && first_frame == 0) observer.on_message(describe(*untangled));
   StatsWriter stats(results.stats_file(), simulation.steps_done());
   int frame = first_frame;
   while (simulation.steps_done() < steps_total) {
@@ -177,7 +186,8 @@ RunSummary run(Simulation& simulation, const ResultsFolder& results, RunObserver
       save_last_good(simulation, results);
       break;
     }
-    if (record.fallbacks > 0) observer.on_message(fmt::format("step {}: {} failed; {} solved it", record.step, simulation.scene().solver.name, record.solver));
+    if (record.fallbacks > 0)
+      observer.on_message(fmt::format("step {}: {} failed; {} solved it", record.step, simulation.scene().solver.name, record.solver));
     const bool ends_frame = simulation.steps_done() % time.steps_per_frame == 0;
     stats.write(record, simulation.steps_done() / time.steps_per_frame);
     add_step(summary, record);

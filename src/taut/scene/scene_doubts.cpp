@@ -96,9 +96,10 @@ void doubt_layers(Doubts& d, const Cloth& cloth, const ClothEstimate& e) {
           thickness, cloth.name, 0.5 * e.spacing);
   for (const ContactPair& pair : d.scene.contact.pairs)
     if (d.scene.contact.self && pair.cloth == cloth.name && pair.with == cloth.name && pair.thickness > 0.5 * e.spacing)
-      d.add("contact.pair: thickness = {} m of cloth '{}' with itself is more than half of one of its edges: it will push its own neighbours "
-            "apart; set it below {:.1g}",
-            pair.thickness, cloth.name, 0.5 * e.spacing);
+      d.add(
+          "contact.pair: thickness = {} m of cloth '{}' with itself is more than half of one of its edges: it will push its own neighbours "
+          "apart; set it below {:.1g}",
+          pair.thickness, cloth.name, 0.5 * e.spacing);
 }
 
 void doubt_start(Doubts& d, const Cloth& cloth, const TriangleMesh& shape, const Solid& solid) {

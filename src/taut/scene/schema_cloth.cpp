@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <array>
 
 #include "taut/scene/schema_parts.h"
@@ -46,11 +48,13 @@ void describe_shape(SchemaVisitor& v, Cloth& cloth) {
            "A rectangular sheet: node (i, j) stands at origin + i/(nu-1) u + j/(nv-1) v and has the index j nu + i. Springs as Provot's.",
        .unset = file || tube},
       [&] { describe_grid(v, cloth.grid); });
-  v.table("tube",
-          {.doc = "A closed tube around the z axis, centred: node (i, j) is number i around and j along, its index j times the nodes around plus i. "
-                  "Springs as of a mesh.",
-           .unset = !tube},
-          [&] { describe_tube(v, cloth.tube); });
+  v.table(
+      "tube",
+      {.doc =
+           "A closed tube around the z axis, centred: node (i, j) is number i around and j along, its index j times the nodes around plus i. "
+           "Springs as of a mesh.",
+       .unset = !tube},
+      [&] { describe_tube(v, cloth.tube); });
   constexpr const char* mesh_only = "a cloth with mesh";
   constexpr const char* placed_only = "a cloth with tube or mesh (a grid is placed by its origin, u and v)";
   v.file("mesh", cloth.mesh,
@@ -134,7 +138,11 @@ void describe_pin(SchemaVisitor& v, const Cloth& cloth, Pin& pin) {
 }  // namespace
 
 void describe_cloth(SchemaVisitor& v, Cloth& cloth) {
-  v.text("name", cloth.name, {.doc = "for reports and file names; `cloth_0`, `cloth_1`, ... when not given", .unset = cloth.name.empty()});
+  v.text("name", cloth.name,
+         {.doc = "for reports and file names, so without `/` and `\\`; `cloth_0`, `cloth_1`, ... when not given",
+          .unset = cloth.name.empty()});
+  v.check(cloth.name.find_first_of("/\\") == std::string::npos, "name",
+          fmt::format("'{}' becomes part of file names, where / and \\ part folders: leave them out", cloth.name));
   describe_shape(v, cloth);
   v.exactly_one(std::array{"node_mass", "density"});
   v.number("node_mass", cloth.node_mass,

@@ -7,7 +7,7 @@ namespace taut {
 namespace {
 constexpr std::array up_names{"z", "y"};
 constexpr std::array shape_names{"sphere", "plane", "cylinder", "box", "mesh"};
-}
+}  // namespace
 
 void describe_solid(SchemaVisitor& v, Solid& solid) {
   v.text("name", solid.name, {.doc = "for reports; `solid_0`, `solid_1`, ... when not given", .unset = solid.name.empty()});
@@ -62,11 +62,13 @@ void describe_solid(SchemaVisitor& v, Solid& solid) {
   int up = solid.y_up ? 1 : 0;
   v.choose("up", up, up_names, {.doc = "the files' upward axis; `y` is turned to Taut's z", .applies = mesh, .only_for = mesh_only});
   solid.y_up = up == 1;
-  v.file("motion", solid.motion,
-         {.doc = "its vertices over time: PC2, raw float32 (.f32, .raw) or the first OBJ of a numbered sequence; linear in between, the last held",
-          .unset = solid.motion.empty(),
-          .applies = mesh,
-          .only_for = mesh_only});
+  v.file(
+      "motion", solid.motion,
+      {.doc =
+           "its vertices over time: PC2, raw float32 (.f32, .raw) or the first OBJ of a numbered sequence; linear in between, the last held",
+       .unset = solid.motion.empty(),
+       .applies = mesh,
+       .only_for = mesh_only});
   v.number("motion_rate", solid.motion_rate,
            {.doc = "samples of `motion` in a second", .unit = "Hz", .min = 1e-3, .max = 1e6, .applies = mesh, .only_for = mesh_only});
   v.number("friction", solid.friction, {.doc = "Coulomb's μ, at rest and sliding", .min = 0, .max = 100});

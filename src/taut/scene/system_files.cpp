@@ -43,8 +43,9 @@ SystemFiles files_of_dump(const fs::path& folder) {
     throw InputError({folder.string()},
                      "has no meta.json: it is not a dump, or one that was interrupted; write it with `taut dump`, or use --matrix A.mtx");
   const auto if_there = [&](const char* name) { return fs::exists(folder / name) ? folder / name : fs::path(); };
-  return {folder / "A.mtx", folder / "b.mtx", folder / "U.mtx", folder / "z.mtx", if_there("A_core.mtx"), if_there("guess.mtx"), if_there("x.mtx"),
-          if_there("M.mtx"), true};
+  return {folder / "A.mtx",  folder / "b.mtx",       folder / "U.mtx",
+          folder / "z.mtx",  if_there("A_core.mtx"), if_there("guess.mtx"),
+          if_there("x.mtx"), if_there("M.mtx"),      true};
 }
 
 StoredSystem::StoredSystem(const SystemFiles& files) : matrix_(to_system_matrix(read_matrix_market(files.matrix), files.matrix.string())) {

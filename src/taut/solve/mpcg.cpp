@@ -104,12 +104,15 @@ void Mpcg::run(const LinearSystem& system, std::span<double> x, SolveSummary& su
   if (!std::isfinite(delta) || !std::isfinite(delta0)) {
     summary.status = {Outcome::not_finite, fmt::format("the residual is not finite after {} iterations", summary.iterations)};
   } else if (delta < 0.0 || delta0 < 0.0) {
-    summary.status = {Outcome::not_positive_definite, fmt::format("rᵀ M⁻¹ r = {:.3g} < 0 after {} iterations: the preconditioner is not positive definite",
-                                                                  std::min(delta, delta0), summary.iterations)};
+    summary.status = {Outcome::not_positive_definite,
+                      fmt::format("rᵀ M⁻¹ r = {:.3g} < 0 after {} iterations: the preconditioner is not positive definite",
+                                  std::min(delta, delta0), summary.iterations)};
   } else if (!(curvature > 0.0)) {
-    summary.status = {Outcome::not_positive_definite, fmt::format("a search direction of curvature {:.3g} after {} iterations", curvature, summary.iterations)};
+    summary.status = {Outcome::not_positive_definite,
+                      fmt::format("a search direction of curvature {:.3g} after {} iterations", curvature, summary.iterations)};
   } else if (delta > limit) {
-    summary.status = {Outcome::max_iterations, fmt::format("{} iterations reach {:.3g}, not {:.3g}", summary.iterations, summary.stop_value, options_.tolerance)};
+    summary.status = {Outcome::max_iterations,
+                      fmt::format("{} iterations reach {:.3g}, not {:.3g}", summary.iterations, summary.stop_value, options_.tolerance)};
   }
 }
 

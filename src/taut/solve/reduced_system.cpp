@@ -25,6 +25,8 @@ bool ReducedSystem::update(const LinearSystem& system) {
   return fresh;
 }
 
-void ReducedSystem::prolong_to(const LinearSystem& system, std::span<double> x) const { prolong(system.constraints, solution_, system.z, x); }
+void ReducedSystem::prolong_to(const LinearSystem& system, std::span<double> x) const {
+  prolong(system.constraints, solution_, system.z, x);
+}
 
 }  // namespace taut

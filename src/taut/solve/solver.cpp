@@ -12,9 +12,9 @@
 #include "taut/constraint/reduction.h"
 #include "taut/linalg/sparse_cholesky.h"
 #include "taut/linalg/vector_ops.h"
+#include "taut/solve/auto_solver.h"
 #include "taut/solve/block_direct.h"
 #include "taut/solve/core_fast.h"
-#include "taut/solve/auto_solver.h"
 #include "taut/solve/core_pcg.h"
 #include "taut/solve/direct.h"
 #include "taut/solve/eq10.h"
@@ -26,53 +26,65 @@ namespace taut {
 
 namespace {
 
-// The list: one line a solver.
+template <class Solver, class... Choice>
+SolverFactory made(Choice... choice) {
+  return [=](const SolverOptions& options) { return std::make_unique<Solver>(options, choice...); };
+}
+template <class Solver>
+SolverFactory made_with(const PreconditionerChoice& choice) {
+  return [&choice](const SolverOptions& options) { return std::make_unique<Solver>(options, choice); };
+}
+
 struct Entry {
   const char* name;
-  std::unique_ptr<ConstrainedSolver> (*make)(const SolverOptions&);  // null: the backend's library registers it
-  const char* backend;                                               // the Cholesky it cannot do without, or null
+  SolverFactory make;   // empty: the backend's library registers it
+  const char* backend;  // the Cholesky it cannot do without, or null
 };
 
-const Entry entries[] = {
-    {"mpcg", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<Mpcg>(o, preconditioner::diagonal); }, nullptr},
-    {"mpcg:diagonal", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<Mpcg>(o, preconditioner::diagonal); }, nullptr},
-    {"mpcg:block_diagonal", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<Mpcg>(o, preconditioner::block_diagonal); }, nullptr},
-    {"mpcg:projected_block_diagonal", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<Mpcg>(o, preconditioner::projected_block_diagonal); }, nullptr},
-    {"mpcg:ic0", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<Mpcg>(o, preconditioner::ic0); }, nullptr},
-    {"mpcg:ic0_core", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<Mpcg>(o, preconditioner::ic0_core); }, nullptr},
-    {"mpcg:ssor", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<Mpcg>(o, preconditioner::ssor); }, nullptr},
-    {"upcg", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<Upcg>(o, preconditioner::diagonal); }, nullptr},
-    {"upcg:diagonal", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<Upcg>(o, preconditioner::diagonal); }, nullptr},
-    {"upcg:block_diagonal", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<Upcg>(o, preconditioner::block_diagonal); }, nullptr},
-    {"upcg:reduced_diagonal", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<Upcg>(o, preconditioner::reduced_diagonal); }, nullptr},
-    {"upcg:projected_block_diagonal", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<Upcg>(o, preconditioner::projected_block_diagonal); }, nullptr},
-    {"upcg:ic0", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<Upcg>(o, preconditioner::ic0); }, nullptr},
-    {"upcg:ic0_core", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<Upcg>(o, preconditioner::ic0_core); }, nullptr},
-    {"upcg:ssor", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<Upcg>(o, preconditioner::ssor); }, nullptr},
-    {"upcg:amg", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<Upcg>(o, preconditioner::amg); }, nullptr},
-    {"ppcg", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<Ppcg>(o, preconditioner::projected_block_diagonal); }, nullptr},
-    {"ppcg:block_diagonal", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<Ppcg>(o, preconditioner::projected_block_diagonal); }, nullptr},
-    {"ppcg:ic0", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<Ppcg>(o, preconditioner::ic0); }, nullptr},
-    {"ppcg:ic0_core", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<Ppcg>(o, preconditioner::ic0_core); }, nullptr},
-    {"ppcg:ssor", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<Ppcg>(o, preconditioner::ssor); }, nullptr},
-    {"ppcg:amg", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<Ppcg>(o, preconditioner::amg); }, nullptr},
-    {"eq10", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<Eq10>(o, Eq10Preconditioner::block_diagonal); }, nullptr},
-    {"eq10:block_diagonal", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<Eq10>(o, Eq10Preconditioner::block_diagonal); }, nullptr},
-    {"eq10:ilu0", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<Eq10>(o, Eq10Preconditioner::ilu0); }, nullptr},
-    {"cholmod", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<Direct>(o, "cholmod"); }, "cholmod"},
-    {"cholmod_reused_analysis", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<Direct>(o, "cholmod", AnalysisUse::kept); }, "cholmod"},
-    {"pardiso", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<Direct>(o, "pardiso"); }, "pardiso"},
-    {"pardiso_cgs", nullptr, "pardiso"},
-    {"eigen_ldlt", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<Direct>(o, "eigen"); }, nullptr},
-    {"block_cholesky", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<BlockDirect>(o); }, nullptr},
-    {"core_fast", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<CoreFast>(o); }, nullptr},
-    {"core_pcg", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<CorePcg>(o, ""); }, nullptr},
-    {"core_pcg:cholmod", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<CorePcg>(o, "cholmod"); }, "cholmod"},
-    {"core_pcg:eigen", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<CorePcg>(o, "eigen"); }, nullptr},
-    {"core_pcg:block", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<CorePcg>(o, "block"); }, nullptr},
-    {"auto", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<AutoSolver>(o); }, nullptr},
-    {"core_pcg:pardiso", [](const SolverOptions& o) -> std::unique_ptr<ConstrainedSolver> { return std::make_unique<CorePcg>(o, "pardiso"); }, "pardiso"},
-};
+// The list: one line a solver.
+const std::vector<Entry>& entries() {
+  static const std::vector<Entry> list = {
+      {"mpcg", made_with<Mpcg>(preconditioner::diagonal), nullptr},
+      {"mpcg:diagonal", made_with<Mpcg>(preconditioner::diagonal), nullptr},
+      {"mpcg:block_diagonal", made_with<Mpcg>(preconditioner::block_diagonal), nullptr},
+      {"mpcg:projected_block_diagonal", made_with<Mpcg>(preconditioner::projected_block_diagonal), nullptr},
+      {"mpcg:ic0", made_with<Mpcg>(preconditioner::ic0), nullptr},
+      {"mpcg:ic0_core", made_with<Mpcg>(preconditioner::ic0_core), nullptr},
+      {"mpcg:ssor", made_with<Mpcg>(preconditioner::ssor), nullptr},
+      {"upcg", made_with<Upcg>(preconditioner::diagonal), nullptr},
+      {"upcg:diagonal", made_with<Upcg>(preconditioner::diagonal), nullptr},
+      {"upcg:block_diagonal", made_with<Upcg>(preconditioner::block_diagonal), nullptr},
+      {"upcg:reduced_diagonal", made_with<Upcg>(preconditioner::reduced_diagonal), nullptr},
+      {"upcg:projected_block_diagonal", made_with<Upcg>(preconditioner::projected_block_diagonal), nullptr},
+      {"upcg:ic0", made_with<Upcg>(preconditioner::ic0), nullptr},
+      {"upcg:ic0_core", made_with<Upcg>(preconditioner::ic0_core), nullptr},
+      {"upcg:ssor", made_with<Upcg>(preconditioner::ssor), nullptr},
+      {"upcg:amg", made_with<Upcg>(preconditioner::amg), nullptr},
+      {"ppcg", made_with<Ppcg>(preconditioner::projected_block_diagonal), nullptr},
+      {"ppcg:block_diagonal", made_with<Ppcg>(preconditioner::projected_block_diagonal), nullptr},
+      {"ppcg:ic0", made_with<Ppcg>(preconditioner::ic0), nullptr},
+      {"ppcg:ic0_core", made_with<Ppcg>(preconditioner::ic0_core), nullptr},
+      {"ppcg:ssor", made_with<Ppcg>(preconditioner::ssor), nullptr},
+      {"ppcg:amg", made_with<Ppcg>(preconditioner::amg), nullptr},
+      {"eq10", made<Eq10>(Eq10Preconditioner::block_diagonal), nullptr},
+      {"eq10:block_diagonal", made<Eq10>(Eq10Preconditioner::block_diagonal), nullptr},
+      {"eq10:ilu0", made<Eq10>(Eq10Preconditioner::ilu0), nullptr},
+      {"cholmod", made<Direct>("cholmod"), "cholmod"},
+      {"cholmod_reused_analysis", made<Direct>("cholmod", AnalysisUse::kept), "cholmod"},
+      {"pardiso", made<Direct>("pardiso"), "pardiso"},
+      {"pardiso_cgs", nullptr, "pardiso"},
+      {"eigen_ldlt", made<Direct>("eigen"), nullptr},
+      {"block_cholesky", made<BlockDirect>(), nullptr},
+      {"core_fast", made<CoreFast>(), nullptr},
+      {"core_pcg", made<CorePcg>(""), nullptr},
+      {"core_pcg:cholmod", made<CorePcg>("cholmod"), "cholmod"},
+      {"core_pcg:eigen", made<CorePcg>("eigen"), nullptr},
+      {"core_pcg:block", made<CorePcg>("block"), nullptr},
+      {"auto", made<AutoSolver>(), nullptr},
+      {"core_pcg:pardiso", made<CorePcg>("pardiso"), "pardiso"},
+  };
+  return list;
+}
 
 // What a direct method in double precision may leave where the matrix is regular: stiff cloth at large steps leaves 1e-6.
 constexpr double worst_direct_residual = 1e-2;
@@ -83,15 +95,18 @@ std::map<std::string, SolverFactory>& registered() {
 }
 
 const Entry* find_entry(const std::string& name) {
-  for (const Entry& entry : entries)
+  for (const Entry& entry : entries())
     if (name == entry.name) return &entry;
   return nullptr;
 }
 
-bool available(const Entry& entry) { return entry.make ? !entry.backend || make_cholesky(entry.backend) : registered().contains(entry.name); }
+bool available(const Entry& entry) {
+  return entry.make ? !entry.backend || make_cholesky(entry.backend) : registered().contains(entry.name);
+}
 
 std::string how_to_get(const std::string& backend) {
-  return backend == "pardiso" ? "type './taut setup pardiso' (or install oneMKL and build with -DTAUT_WITH_PARDISO=ON)" : "build with -DTAUT_WITH_CHOLMOD=ON";
+  return backend == "pardiso" ? "type './taut setup pardiso' (or install oneMKL and build with -DTAUT_WITH_PARDISO=ON)"
+                              : "build with -DTAUT_WITH_CHOLMOD=ON";
 }
 
 }  // namespace
@@ -101,12 +116,12 @@ std::unique_ptr<ConstrainedSolver> make_solver(const SolverOptions& options) {
   const Entry* entry = find_entry(options.name);
   if (!entry) {
     const std::string near = nearest_name(options.name, known);
-    throw InputError(fmt::format("unknown solver '{}'{}; the solvers are: {}", options.name, near.empty() ? "" : fmt::format(" (did you mean '{}'?)", near),
-                                 fmt::join(known, ", ")));
+    throw InputError(fmt::format("unknown solver '{}'{}; the solvers are: {}", options.name,
+                                 near.empty() ? "" : fmt::format(" (did you mean '{}'?)", near), fmt::join(known, ", ")));
   }
   if (!available(*entry))
-    throw InputError(fmt::format("solver '{}' needs the {} backend, which is not built into this program; {}, or use one of: {}", options.name,
-                                 entry->backend, how_to_get(entry->backend), fmt::join(known, ", ")));
+    throw InputError(fmt::format("solver '{}' needs the {} backend, which is not built into this program; {}, or use one of: {}",
+                                 options.name, entry->backend, how_to_get(entry->backend), fmt::join(known, ", ")));
   return entry->make ? entry->make(options) : registered().at(entry->name)(options);
 }
 
@@ -117,7 +132,7 @@ void register_solver(const std::string& name, SolverFactory factory) {
 
 std::vector<std::string> solver_names() {
   std::vector<std::string> names;
-  for (const Entry& entry : entries)
+  for (const Entry& entry : entries())
     if (available(entry)) names.emplace_back(entry.name);
   return names;
 }
@@ -153,11 +168,13 @@ SolveSummary ConstrainedSolver::solve(const LinearSystem& system, std::span<doub
   }
   run(system, x, summary);
   summary.relative_residual = relative_residual(system, x);
-  if (!std::isfinite(summary.relative_residual) && summary.status.ok()) summary.status = {Outcome::not_finite, "the solution holds NaN or infinity"};
+  if (!std::isfinite(summary.relative_residual) && summary.status.ok())
+    summary.status = {Outcome::not_finite, "the solution holds NaN or infinity"};
   if (summary.status.ok() && is_direct() && summary.relative_residual > worst_direct_residual)
-    summary.status = {Outcome::breakdown, fmt::format("the factorisation leaves a relative residual of {:.2g}: the matrix is singular, or too "
-                                                      "ill-conditioned for {} precision",
-                                                      summary.relative_residual, summary.precision)};
+    summary.status = {Outcome::breakdown,
+                      fmt::format("the factorisation leaves a relative residual of {:.2g}: the matrix is singular, or too "
+                                  "ill-conditioned for {} precision",
+                                  summary.relative_residual, summary.precision)};
   if (!std::isfinite(summary.relative_residual)) initial_guess(system, x);
   return summary;
 }

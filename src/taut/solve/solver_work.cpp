@@ -26,7 +26,8 @@ FactorSize estimate_factor(const SystemSize& size, double nonzeros) {
   const double neighbours = nonzeros / (area * n) - 1.0;
   if (neighbours < 0.5) return {size.unknowns, size.unknowns};
   const double width = neighbours / 4.0;
-  return {1.4 * std::pow(width, 1.12) * area * n * std::log2(n), 8.5 * std::pow(width, 1.75) * area * (size.unknowns / n) * std::pow(n, 1.5)};
+  return {1.4 * std::pow(width, 1.12) * area * n * std::log2(n),
+          8.5 * std::pow(width, 1.75) * area * (size.unknowns / n) * std::pow(n, 1.5)};
 }
 
 namespace {

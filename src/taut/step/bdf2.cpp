@@ -2,7 +2,8 @@
 
 namespace taut {
 
-void Bdf2::assemble(Assembler& assembler, const ExternalForces& external, const State& state, double h, BlockCsr& a, std::span<Vec3> b) const {
+void Bdf2::assemble(Assembler& assembler, const ExternalForces& external, const State& state, double h, BlockCsr& a,
+                    std::span<Vec3> b) const {
   if (!state.has_previous) return first_step_.assemble(assembler, external, state, h, a, b);
   const double k = 4.0 * h * h / 9.0, d = 2.0 * h / 3.0;
   // D's operand: 4h²/9 v_n (f holds -D v_n, which the formula leaves out again) + 2h/9 δ.

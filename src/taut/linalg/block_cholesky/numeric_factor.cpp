@@ -12,7 +12,8 @@ namespace taut {
 
 template <class T>
 NumericFactor<T>::NumericFactor(const SupernodeTree& tree, const AnalyzedGraph& graph, const FrontKernels<T>& kernels)
-    : kernels_(kernels), layout_(make_factor_layout(tree, graph, {kernels_.lanes, kernels_.slab_rows, kernels_.column_group, kernels_.packed_size})) {
+    : kernels_(kernels),
+      layout_(make_factor_layout(tree, graph, {kernels_.lanes, kernels_.slab_rows, kernels_.column_group, kernels_.packed_size})) {
   packed_ = AlignedArray<T>(layout_.packed_size);
   vectors_[0] = AlignedArray<T>(layout_.vector_size);
   fate_.resize(layout_.front.size());
