@@ -186,7 +186,7 @@ TEST(Reduction, DeterministicInTheNumberOfThreads) {
   Reduction reduction;
   set_thread_count(1);
   reduction.update(a, &set);
-  const std::vector<double> expected = reduction.matrix().values;
+  const LargeVector<double> expected = reduction.matrix().values;
   for (const int threads : {2, 3, 4}) {
     set_thread_count(threads);
     reduction.update(a, &set);

@@ -209,7 +209,7 @@ TEST(Assembler, DeterministicForAnyNumberOfThreads) {
   const std::vector<bool> implicit{true, true, true};
   Assembler assembler(s.nodes, s.models, implicit);
   const int usual = thread_count();
-  std::vector<double> values;
+  LargeVector<double> values;
   std::vector<Vec3> rhs;
   double energy = 0.0;
   for (const int threads : {1, 2, 3, 4}) {

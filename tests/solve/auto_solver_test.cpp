@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <set>
 
 #include "solve/material_sheet.h"
@@ -86,7 +87,7 @@ TEST(AutoSolver, SettlesNearTheLeastCountedWork) {
         // The guess is last step's solution as in `auto`, no worse: what steps.x holds is this step's.
         system.guess = steps.sheet.guess;
         const SolveSummary s = make_solver(solver_options(name, 1e-3))->solve(system, x);
-        const FactorSize factor{s.factor_nonzeros, s.factor_flops};
+        const FactorSize factor{s.factor_nonzeros, s.factor_flops, s.left_out_nonzeros};
         const MethodWork work = name == auto_core_method                  ? core_work(size, factor)
                                 : name == "upcg:projected_block_diagonal" ? block_diagonal_work(size)
                                 : name == "upcg:ic0_core"                 ? incomplete_work(size, size.core_nonzeros, s.preparations)
@@ -162,18 +163,34 @@ TEST(AutoSolver, RefusesAForeignMemory) {
   EXPECT_NO_THROW(make_solver(solver_options("mpcg", 1e-3))->restore_memory({}));
 }
 
-// A positive definite matrix whose core is not: [1 1 1; 1 1 1; 1 1 1] + I/10 without its corner.
+// Two grids and a node between them, bound to one of each: [1 1 1; 1 1 1; 1 1 1] + I/10, positive definite, but not without its corner, which
+// the core leaves out and its factor has no place for.
 TEST(AutoSolver, GoesDirectWhereTheCoreFailsAndRemembersIt) {
-  BlockCsr a(make_pattern({{1, 2}, {0, 2}, {0, 1}}, 1));
-  for_each_entry(a, [](Index r, Index c, double& value) { value = r == c ? 1.1 : 1.0; });
-  std::vector<std::uint8_t> core(9, 1);
-  core[a.pattern->find(0, 2)] = core[a.pattern->find(2, 0)] = 0;
-  const std::vector<double> b{1.0, -2.0, 0.5};
+  constexpr Index side = 14, grid = side * side, hub = 2 * grid, first = 3 * side + 2, second = grid + 5 * side + 3;
+  std::vector<std::vector<Index>> links(2 * grid + 1);
+  for (Index i = 0; i < 2 * grid; ++i) {
+    if ((i + 1) % side != 0) links[i].push_back(i + 1), links[i + 1].push_back(i);
+    if (i % grid + side < grid) links[i].push_back(i + side), links[i + side].push_back(i);
+  }
+  const std::array<Index, 3> bound{first, hub, second};
+  for (const Index i : bound)
+    for (const Index j : bound)
+      if (i != j) links[i].push_back(j);
+  BlockCsr a(make_pattern(links, 1));
+  for_each_entry(a, [&](Index r, Index c, double& value) {
+    const bool are_bound = std::ranges::count(bound, r) > 0 && std::ranges::count(bound, c) > 0;
+    value = r == c ? 5.0 : are_bound ? 0.0 : -1.0;
+    if (are_bound) value += r == c ? 110.0 : 100.0;
+  });
+  std::vector<std::uint8_t> core(static_cast<std::size_t>(a.pattern->blocks()), 1);
+  core[a.pattern->find(first, second)] = core[a.pattern->find(second, first)] = 0;
+  Random random(1);
+  const std::vector<double> b = random.vector(a.dofs());
   LinearSystem system;
   system.matrix = &a, system.rhs = b, system.core = core;
   const auto solver = make_solver(solver_options("auto", 1e-6));
   for (int step = 0; step < 5; ++step) {
-    std::vector<double> x(3);
+    std::vector<double> x(b.size());
     const SolveSummary summary = solver->solve(system, x);
     ASSERT_TRUE(summary.status.ok()) << summary.status.message;
     EXPECT_EQ(summary.fallbacks > 0, step == 0) << summary.remark;

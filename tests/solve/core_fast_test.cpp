@@ -3,27 +3,71 @@
 #include <gtest/gtest.h>
 
 #include "solve/constrained_case.h"
+#include "solve/material_sheet.h"
+#include "taut/linalg/block_cholesky.h"
+#include "taut/solve/core_bound.h"
+#include "taut/solve/reference.h"
 
 namespace taut::test {
 namespace {
 
+// The blocks that core_fast makes its core of: those asked for and those that have a place in their factor.
+std::vector<std::uint8_t> core_with_fill(const ConstrainedCase& c) {
+  BlockCholesky factor(CholeskyPrecision::single_precision);
+  EXPECT_TRUE(factor.analyze(c.a.pattern, c.core, BlocksLeftOut::without_place).ok());
+  return {factor.analyzed_blocks().begin(), factor.analyzed_blocks().end()};
+}
+
 TEST(CoreFast, TakesTheStepsOfCorePcg) {
   Random random(1);
+  int larger = 0, smaller_than_all = 0;
   for (int trial = 0; trial < 10; ++trial) {
     CaseOptions options;
     options.nodes = 60;
-    const ConstrainedCase c = random_case(random, options);
+    ConstrainedCase c = random_case(random, options);
     std::vector<double> x(c.b.size()), expected(c.b.size());
-    const SolveSummary slow = make_solver(solver_options("core_pcg:eigen", 1e-4))->solve(c.system(), expected);
-    const SolveSummary fast = make_solver(solver_options("core_fast", 1e-4))->solve(c.system(), x);
-    ASSERT_TRUE(fast.status.ok()) << fast.status.message;
-    EXPECT_EQ(fast.iterations, slow.iterations);
-    EXPECT_NEAR(fast.start_value, slow.start_value, 1e-5 * slow.start_value);
-    EXPECT_NEAR(fast.stop_value, slow.stop_value, 1e-2 * slow.stop_value);
-    EXPECT_LT(relative_difference(x, as_eigen(expected)), 1e-5);
-    EXPECT_STREQ(fast.precision, "single");
-    EXPECT_EQ(fast.fallbacks, 0);
+    LinearSystem same = c.system();
+    const std::vector<std::uint8_t> core = core_with_fill(c);
+    same.core = core;
+    larger += std::ranges::count(core, 1) > std::ranges::count(c.core, 1);
+    smaller_than_all += std::ranges::count(core, 0) > 0;
+    LinearSystem system = c.system();
+    for (const bool from_rest : {true, false}) {
+      // Last step's x is not looked at; an iterate is where it goes on.
+      same.guess = from_rest ? std::span<const double>() : system.guess;
+      system.guess_is_iterate = !from_rest;
+      const SolveSummary slow = make_solver(solver_options("core_pcg:eigen", 1e-4))->solve(same, expected);
+      const SolveSummary fast = make_solver(solver_options("core_fast", 1e-4))->solve(system, x);
+      ASSERT_TRUE(fast.status.ok()) << fast.status.message;
+      EXPECT_EQ(fast.iterations, slow.iterations);
+      EXPECT_NEAR(fast.start_value, slow.start_value, 1e-5 * slow.start_value);
+      EXPECT_NEAR(fast.stop_value, slow.stop_value, 1e-2 * slow.stop_value);
+      EXPECT_LT(relative_difference(x, as_eigen(expected)), 1e-5);
+      EXPECT_STREQ(fast.precision, "single");
+      EXPECT_EQ(fast.fallbacks, 0);
+    }
   }
+  EXPECT_GT(larger, 5);
+  EXPECT_GT(smaller_than_all, 5);
+}
+
+// Single precision loses digits to the stiffness; the true residual, looked at on the way, brings them back.
+TEST(CoreFast, IsAsExactAsAskedForAtAnyStiffness) {
+  for (const double k_stretch : {60.0, 6e3, 6e5, 6e7})
+    for (const double tolerance : {1e-3, 1e-6, 1e-10})
+      for (const bool stiffness_is_known : {true, false}) {
+        MaterialSheet sheet({.k_stretch = k_stretch, .h = 3.67e-3, .nodes = 31}, 7);
+        sheet.hold_some();
+        LinearSystem system = sheet.with_core(sheet.stretch);
+        if (stiffness_is_known) system.stiffness = 0.5 * block_diagonal_condition(*system.matrix) - 1.0;
+        std::vector<double> x(sheet.b.size());
+        const SolveSummary summary = make_solver(solver_options("core_fast", tolerance))->solve(system, x);
+        ASSERT_TRUE(summary.status.ok()) << summary.status.message;
+        // The stop test's norm and A's differ by the root of the condition that the core leaves, at most.
+        const double bound = std::sqrt(2.0 * (1.0 + system.rho)) * tolerance;
+        EXPECT_LT(anorm_error(system, x, reference_solution(system)), bound) << "k_stretch " << k_stretch << ", tolerance " << tolerance;
+        EXPECT_LE(summary.iterations, summary.bound_iterations);
+      }
 }
 
 // One object, one matrix pattern, contacts that come and go.
@@ -52,8 +96,8 @@ TEST(CoreFast, FallsBackToDoubleWhenSingleOverflows) {
   Random random(3);
   ConstrainedCase c = random_case(random, {});
   const Eigen::VectorXd expected = c.solution();
-  for (auto* values : {&c.a.values, &c.b})
-    for (double& value : *values) value *= 1e100;
+  for (const std::span<double> values : {std::span<double>(c.a.values), std::span<double>(c.b)})
+    for (double& value : values) value *= 1e100;
   std::vector<double> x(c.b.size());
   const SolveSummary summary = make_solver(solver_options("core_fast", 1e-8))->solve(c.system(), x);
   ASSERT_TRUE(summary.status.ok()) << summary.status.message;

@@ -13,4 +13,21 @@ void prefer_huge_pages([[maybe_unused]] void* begin, [[maybe_unused]] std::size_
 #endif
 }
 
+namespace {
+
+std::align_val_t alignment_of(std::size_t bytes) {
+  constexpr std::size_t cache_line = 64;
+  return std::align_val_t{bytes >= huge_page_bytes ? huge_page_bytes : cache_line};
+}
+
+}  // namespace
+
+void* allocate_large(std::size_t bytes) {
+  void* begin = ::operator new(bytes, alignment_of(bytes));
+  if (bytes >= huge_page_bytes) prefer_huge_pages(begin, bytes);
+  return begin;
+}
+
+void release_large(void* begin, std::size_t bytes) { ::operator delete(begin, alignment_of(bytes)); }
+
 }  // namespace taut

@@ -3,7 +3,7 @@
 //
 //   parallel_for(n, grain, f)   f(begin, end) over disjoint ranges covering [0, n); the iterations must be independent
 //   ordered_sum(n, f)           sum of f(begin, end) over fixed chunks of `sum_chunk` items, added up in order: the chunks, and
-//                               so the rounding, do not depend on the number of threads
+//                               so the rounding, do not depend on the number of threads; f that does much for an item names smaller ones
 //
 // A loop of at most `grain` items runs on the calling thread. Callable from any thread; nested calls are allowed.
 
@@ -51,13 +51,12 @@ constexpr Index sum_chunk = 2048;
 
 // T is a double or anything with += and a zero default (several sums at once: std::array wrappers in vector_ops).
 template <class T = double, class Body>
-T ordered_sum(Index n, Body&& body) {
-  const Index chunks = (n + sum_chunk - 1) / sum_chunk;
+T ordered_sum(Index n, Body&& body, Index chunk = sum_chunk, Index chunks_per_task = 4) {
+  const Index chunks = (n + chunk - 1) / chunk;
   if (chunks <= 1) return n > 0 ? T(body(Index{0}, n)) : T{};
   std::vector<T> partial(static_cast<std::size_t>(chunks));
-  parallel_for(chunks, 4, [&](Index begin, Index end) {
-    for (Index c = begin; c < end; ++c)
-      partial[static_cast<std::size_t>(c)] = body(c * sum_chunk, std::min(n, (c + 1) * sum_chunk));
+  parallel_for(chunks, chunks_per_task, [&](Index begin, Index end) {
+    for (Index c = begin; c < end; ++c) partial[static_cast<std::size_t>(c)] = body(c * chunk, std::min(n, (c + 1) * chunk));
   });
   T total{};
   for (const T& p : partial) total += p;

@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "taut/linalg/block_cholesky/covered_blocks.h"
 #include "taut/linalg/block_cholesky/elimination_order.h"
 #include "taut/linalg/block_cholesky/numeric_factor.h"
 #include "taut/linalg/vector_ops.h"
@@ -21,6 +22,7 @@ struct BlockCholesky::Implementation {
   int fallbacks = 0;
 
   std::shared_ptr<const BlockPattern> analyzed;  // null if the analysis was given no owner
+  std::vector<std::uint8_t> analyzed_blocks;     // of that pattern
   // Of the matrix last factorised:
   std::shared_ptr<const BlockPattern> pattern;
   double scale = 1.0;                 // of the last forward solve
@@ -104,7 +106,18 @@ struct BlockCholesky::Implementation {
     return factorize({a, basis, true}, loads);
   }
 
-  Status analyze(const BlockPattern& p, std::span<const std::uint8_t> mask) {
+  void take_blocks(const BlockPattern& p, std::span<const std::uint8_t> mask, BlocksLeftOut left_out) {
+    if (left_out == BlocksLeftOut::without_place) {
+      analyzed_blocks = covered_blocks(p, graph, tree);
+      graph = analyzed_graph(p, analyzed_blocks);
+      return;
+    }
+    analyzed_blocks.assign(mask.begin(), mask.end());
+    analyzed_blocks.resize(static_cast<std::size_t>(p.blocks()), 1);
+    for (const Index k : p.diagonal) analyzed_blocks[k] = 1;
+  }
+
+  Status analyze(const BlockPattern& p, std::span<const std::uint8_t> mask, BlocksLeftOut left_out) {
     pattern = nullptr;
     analyzed = nullptr;
     single_factor = nullptr;
@@ -112,6 +125,7 @@ struct BlockCholesky::Implementation {
     try {
       graph = analyzed_graph(p, mask);
       tree = make_supernode_tree(graph.graph, elimination_order(graph.graph, graph.weight), graph.weight);
+      take_blocks(p, mask, left_out);
       make_factor(precision != CholeskyPrecision::double_precision);
     } catch (const std::bad_alloc&) {
       return {Outcome::out_of_memory, "Cholesky (block), analysis: not enough memory"};
@@ -150,13 +164,17 @@ void BlockCholesky::set_precision(CholeskyPrecision precision) { implementation_
 
 Status BlockCholesky::analyze(const BlockCsr& a) { return analyze(a.pattern, {}); }
 
-Status BlockCholesky::analyze(const BlockPattern& pattern) { return implementation_->analyze(pattern, {}); }
+Status BlockCholesky::analyze(const BlockPattern& pattern) {
+  return implementation_->analyze(pattern, {}, BlocksLeftOut::all_outside_mask);
+}
 
-Status BlockCholesky::analyze(std::shared_ptr<const BlockPattern> pattern, std::span<const std::uint8_t> mask) {
-  const Status status = implementation_->analyze(*pattern, mask);
+Status BlockCholesky::analyze(std::shared_ptr<const BlockPattern> pattern, std::span<const std::uint8_t> mask, BlocksLeftOut left_out) {
+  const Status status = implementation_->analyze(*pattern, mask, left_out);
   implementation_->pattern = implementation_->analyzed = std::move(pattern);
   return status;
 }
+
+std::span<const std::uint8_t> BlockCholesky::analyzed_blocks() const { return implementation_->analyzed_blocks; }
 
 Status BlockCholesky::factorize(const BlockCsr& a) {
   Implementation& me = *implementation_;

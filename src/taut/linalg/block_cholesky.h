@@ -16,6 +16,7 @@
 //   solve_backward   x = beta x + Q Pᵀ L⁻ᵀ y
 //
 // have A's unknowns on both sides. With a mask in analyze, those blocks are a part of A (the matrix core): A itself is never taken apart.
+// The order is that part's own. Blocks outside it that have a place in its factor anyway, by fill-in, can be taken in for nothing.
 // The first forward solve costs next to nothing when factorize does it on the way.
 //
 // Precision: `single` halves the memory that the solves read and doubles the speed of the arithmetic; meant for preconditioners.
@@ -34,6 +35,9 @@
 #include "taut/linalg/sparse_cholesky.h"
 
 namespace taut {
+
+// Of the pattern's blocks that the mask leaves out: all of them, or only those without a place in the factor.
+enum class BlocksLeftOut { all_outside_mask, without_place };
 
 enum class CholeskyPrecision { double_precision, single_precision, automatic };
 
@@ -60,7 +64,10 @@ class BlockCholesky : public SparseCholesky {
   Status analyze(const BlockCsr& a) override;
   Status analyze(const BlockPattern& pattern);
   // Only blocks whose byte of the mask is not 0, and the diagonal ones; an empty mask: all.
-  Status analyze(std::shared_ptr<const BlockPattern> pattern, std::span<const std::uint8_t> mask);
+  Status analyze(std::shared_ptr<const BlockPattern> pattern, std::span<const std::uint8_t> mask,
+                 BlocksLeftOut left_out = BlocksLeftOut::all_outside_mask);
+  // Of that analysis: one byte per block of the pattern, 1 for those that are factorised.
+  std::span<const std::uint8_t> analyzed_blocks() const;
   Status factorize(const BlockCsr& a) override;
   // The analysed blocks of Qᵀ A Q; A must have the analysed pattern (asserted). `basis` is not kept. b, if not empty: solve_forward(b) at
   // once, whose result goes to *b_norm2.

@@ -258,7 +258,8 @@ void multiply(const BlockCsr& a, std::span<const double> x, std::span<double> y)
 
 double multiply_dot(const BlockCsr& a, std::span<const double> x, std::span<double> y) {
   assert(static_cast<Index>(x.size()) == a.dofs() && static_cast<Index>(y.size()) == a.dofs());
-  return ordered_sum(a.rows(), [&](Index begin, Index end) { return rows_product(a, begin, end, x.data(), y.data()); });
+  return ordered_sum(
+      a.rows(), [&](Index begin, Index end) { return rows_product(a, begin, end, x.data(), y.data()); }, rows_per_task, 1);
 }
 
 Offset multiply_bytes(const BlockCsr& a) {

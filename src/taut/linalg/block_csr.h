@@ -14,6 +14,7 @@
 #include <span>
 #include <vector>
 
+#include "taut/base/huge_pages.h"
 #include "taut/base/types.h"
 
 namespace taut {
@@ -49,7 +50,7 @@ std::shared_ptr<const BlockPattern> make_pattern(std::vector<Index> row_start, s
 
 struct BlockCsr {
   std::shared_ptr<const BlockPattern> pattern;
-  std::vector<double> values;
+  LargeVector<double> values;
 
   BlockCsr() = default;
   explicit BlockCsr(std::shared_ptr<const BlockPattern> p) : pattern(std::move(p)), values(static_cast<std::size_t>(pattern->value_count())) {}

@@ -115,6 +115,7 @@ void StoredSystem::read_masses(const fs::path& path) {
   for (const double m : masses)
     if (!(m > 0.0)) throw InputError({path.string()}, fmt::format("holds {:.9g}: masses are positive", m));
   rho_ = remainder_ratio(matrix_, core_, masses);
+  stiffness_ = 0.5 * block_diagonal_condition(matrix_) - 1.0;
 }
 
 LinearSystem StoredSystem::system() const {
@@ -124,6 +125,7 @@ LinearSystem StoredSystem::system() const {
   system.guess = guess_;
   system.core = core_;
   system.rho = rho_;
+  system.stiffness = stiffness_;
   system.positions = positions_;
   if (constraints_) {
     system.constraints = &*constraints_;

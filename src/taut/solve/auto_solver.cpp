@@ -26,7 +26,7 @@ constexpr double core_condition = 18.0;                           // 2 (1 + ρ) 
 constexpr double loosest = 3.0;                                   // times the error that corePCG may leave
 constexpr double worst_condition = 1e12;                          // of what these methods can solve
 constexpr double nearly_all = 0.98;                               // of A's blocks in the core: the full core is the same
-constexpr double memory_version = 4;
+constexpr double memory_version = 5;
 
 // Times are sums, the rest is the last attempt's.
 void add_attempt(SolveSummary&& attempt, SolveSummary& sum) {
@@ -72,7 +72,7 @@ bool AutoSolver::available(Method method, const SystemSize& size) {
 
 MethodWork AutoSolver::work(Method method, const SystemSize& size) const {
   const Record& r = records_[method];
-  const FactorSize known{r.factor_nonzeros, r.factor_flops};
+  const FactorSize known{r.factor_nonzeros, r.factor_flops, r.left_out_nonzeros};
   switch (method) {
     case core:
       return core_work(size, known.known() ? known : estimate_factor(size, size.core_nonzeros), r.preparations);
@@ -209,7 +209,7 @@ AutoSolver::Attempt AutoSolver::attempt(Method method, int most_iterations, Solv
     s.remark = fmt::format("{} {} after {} iterations", names[method], end, s.iterations);
     // The iterate so far is where the next method begins.
     guess_.assign(solve.x.begin(), solve.x.end());
-    if (all_finite(guess_)) solve.system.guess = guess_;
+    if (all_finite(guess_)) solve.system.guess = guess_, solve.system.guess_is_iterate = true;
     solve.first = false;
   }
   add_attempt(std::move(s), solve.summary);
@@ -225,7 +225,10 @@ AutoSolver::Attempt AutoSolver::attempt(Method method, int most_iterations, Solv
 void AutoSolver::learn(Method method, const SolveSummary& s, const CgCoefficients& record, double tolerance, Solve& solve) {
   Record& r = records_[method];
   r.preparations = s.preparations + s.fallbacks;
-  if (s.factor_nonzeros > 0.0) r.factor_nonzeros = s.factor_nonzeros, r.factor_flops = s.factor_flops;
+  if (s.factor_nonzeros > 0.0) {
+    r.factor_nonzeros = s.factor_nonzeros, r.factor_flops = s.factor_flops;
+    r.left_out_nonzeros = std::max(0.0, s.left_out_nonzeros);
+  }
   if (!s.status.ok() && s.status.outcome != Outcome::max_iterations) {
     r.iterations = -1.0;
     r.next_trial = solves_ + bar_after_failure;
@@ -258,7 +261,8 @@ std::vector<double> AutoSolver::memory() const {
   std::vector<double> list{memory_version, solves_};
   for (int m = 0; m < method_count; ++m) {
     const Record& r = records_[static_cast<std::size_t>(m)];
-    list.insert(list.end(), {r.iterations, r.condition, r.next_trial, r.patience, r.factor_nonzeros, r.factor_flops, r.preparations});
+    list.insert(list.end(), {r.iterations, r.condition, r.next_trial, r.patience, r.factor_nonzeros, r.factor_flops,
+                             r.left_out_nonzeros, r.preparations});
     const std::vector<double> inner =
         solvers_[static_cast<std::size_t>(m)] ? solvers_[static_cast<std::size_t>(m)]->memory() : std::vector<double>{};
     list.push_back(static_cast<double>(inner.size()));
@@ -282,7 +286,8 @@ void AutoSolver::restore_memory(std::span<const double> memory) {
   solves_ = next();
   for (int m = 0; m < method_count; ++m) {
     Record& r = records_[static_cast<std::size_t>(m)];
-    for (double* value : {&r.iterations, &r.condition, &r.next_trial, &r.patience, &r.factor_nonzeros, &r.factor_flops, &r.preparations})
+    for (double* value : {&r.iterations, &r.condition, &r.next_trial, &r.patience, &r.factor_nonzeros, &r.factor_flops,
+                          &r.left_out_nonzeros, &r.preparations})
       *value = next();
     const double count = next();
     if (!(count >= 0.0 && count <= static_cast<double>(memory.size() - at)))

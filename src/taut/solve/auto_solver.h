@@ -68,7 +68,7 @@ class AutoSolver : public ConstrainedSolver {
     double condition = 0.0;    // of M⁻¹ A, as far as its solves have shown; 0: none yet
     double next_trial = 0.0;   // number of the solve from which on it may be tried
     double patience = 32.0;    // solves between trials
-    double factor_nonzeros = 0.0, factor_flops = 0.0;
+    double factor_nonzeros = 0.0, factor_flops = 0.0, left_out_nonzeros = 0.0;
     double preparations = 1.0;  // of the preconditioner, in its last solve; of a core's factor: once more in double precision
   };
   enum class Attempt { solved, given_up, failed };

@@ -42,4 +42,14 @@ std::vector<std::uint8_t> choose_core(const BlockPattern& pattern, std::span<con
   return core;
 }
 
+double stiffness_ratio(const BlockPattern& pattern, std::span<const double> bounds, std::span<const double> masses) {
+  double largest = 0.0;
+  for (Index i = 0; i < pattern.rows(); ++i) {
+    double sum = 0.0;
+    for (Index k = pattern.row_start[i]; k < pattern.row_start[i + 1]; ++k) sum += bounds[k];
+    largest = std::max(largest, sum / masses[i]);
+  }
+  return largest;
+}
+
 }  // namespace taut

@@ -27,4 +27,7 @@ inline constexpr double core_target_rho = 8.0;
 std::vector<std::uint8_t> choose_core(const BlockPattern& pattern, std::span<const double> bounds, std::span<const double> masses,
                                       double target_rho = core_target_rho);
 
+// σ = max_i Σ_j c_ij / m_i: what the elements can add to a node's diagonal block, relative to its mass.
+double stiffness_ratio(const BlockPattern& pattern, std::span<const double> bounds, std::span<const double> masses);
+
 }  // namespace taut

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "taut/base/parallel.h"
 #include "taut/base/timer.h"
 #include "taut/linalg/vector_ops.h"
 #include "taut/solve/core_bound.h"
@@ -17,26 +16,17 @@ namespace taut {
 
 namespace {
 
-// The factor in single precision is looked at when convergence is slow, and taken for bad when it misjudges a direction's energy by this
-// share: then its rounding, not the springs outside the core, sets the number of iterations.
-constexpr int check_every = 8;
-constexpr double worst_quality = 0.3;
+// The rounding that is taken for harmless, as a share of the tolerance; and how far above it, in units of itself, the residual is looked at.
+constexpr double harmless_share = 0.5;
+constexpr double look_above = 2.0;
+// The true residual is what was believed if it is at most this many times as large.
+constexpr double as_believed = 2.0;
+// The factor is bad where the true residual is more than this share of the last one.
+constexpr double least_gain = 0.3;
 
-// y = P x: the blocks of the mask.
-void multiply_masked(const BlockCsr& a, std::span<const std::uint8_t> mask, std::span<const double> x, std::span<double> y) {
-  const BlockPattern& p = *a.pattern;
-  parallel_for(p.rows(), 256, [&](Index begin, Index end) {
-    for (Index i = begin; i < end; ++i) {
-      const Index rows = p.dim(i), width = p.width(i);
-      for (Index r = 0; r < rows; ++r) y[p.dof_start[i] + r] = 0.0;
-      for (Index k = p.row_start[i]; k < p.row_start[i + 1]; ++k) {
-        if (!mask[k] && p.column[k] != i) continue;
-        const double* block = a.block(i, k);
-        for (Index r = 0; r < rows; ++r)
-          for (Index c = 0; c < p.dim(p.column[k]); ++c) y[p.dof_start[i] + r] += block[r * width + c] * x[p.column_dof[k] + c];
-      }
-    }
-  });
+double rounding_of(const LinearSystem& system, bool in_single) {
+  if (!in_single) return 0.0;
+  return system.stiffness >= 0.0 ? 4.0 * 0x1p-24 * std::sqrt(1.0 + system.stiffness) : CoreFast::unknown_rounding;
 }
 
 }  // namespace
@@ -48,9 +38,13 @@ bool CoreFast::analyze_if_new(const LinearSystem& system, SolveSummary& summary)
   mask_ = core_mask(system);
   pattern_ = system.matrix->pattern;
   factor_.set_precision(CholeskyPrecision::single_precision);
-  summary.status = factor_.analyze(pattern_, mask_);
-  if (!summary.status.ok()) pattern_ = nullptr;
-  return summary.status.ok();
+  summary.status = factor_.analyze(pattern_, mask_, BlocksLeftOut::without_place);
+  if (!summary.status.ok()) {
+    pattern_ = nullptr;
+    return false;
+  }
+  remainder_.analyze(pattern_, factor_.analyzed_blocks());
+  return true;
 }
 
 bool CoreFast::factorize(CholeskyPrecision precision, const LinearSystem& system, SolveSummary& summary) {
@@ -74,63 +68,81 @@ bool CoreFast::begin_in_double(const LinearSystem& system, SolveSummary& summary
   return factorize(CholeskyPrecision::double_precision, system, summary);
 }
 
-// For the search direction c and w = P c: wᵀ P̃⁻¹ w / cᵀ w, which is 1 but for the factor's rounding. Takes q_ for w.
-double CoreFast::factor_quality(const BlockCsr& a) {
-  multiply_masked(a, mask_, c_, q_);
-  const double energy = dot(c_, q_);
-  return factor_.solve_forward(q_) / energy;
-}
-
-// r_ for the start x. At rest, x = (I-S) z, it is the load.
 void CoreFast::residual(const LinearSystem& system, std::span<const double> x) {
-  starts_at_rest_ = false;
   multiply_dot(*system.matrix, x, r_);
   residual_from_product(system.rhs, r_);
 }
 
+// x and its residual. At rest, x = (I-S) z, that is the load.
+void CoreFast::start(const LinearSystem& system, std::span<double> x) {
+  starts_at_rest_ = system.guess.empty() || !system.guess_is_iterate;
+  LinearSystem from_rest = system;
+  if (starts_at_rest_) from_rest.guess = {};
+  initial_guess(from_rest, x);
+  if (starts_at_rest_) {
+    std::ranges::copy(load_, r_.begin());
+  } else {
+    residual(system, x);
+  }
+}
+
 // Conjugate gradients for the residual in r_, whose forward solve came with the factorisation, from x on; `done` iterations came before.
-KrylovResult CoreFast::iterate(const BlockCsr& a, std::span<double> x, int done, int max_iterations, bool watch_factor) {
+KrylovResult CoreFast::iterate(const LinearSystem& system, std::span<double> x, int done, int max_iterations, bool in_single) {
   KrylovResult result;
-  const double limit = options_.tolerance * options_.tolerance * delta0_;
-  const auto relative = [&](double d) { return std::sqrt(std::abs(d / delta0_)); };
-  double delta = delta_, previous = 0.0;
-  result.start_value = relative(delta);
-  bool is_indefinite = false;
+  const double rounding = rounding_of(system, in_single), scale = std::sqrt(delta0_), limit = options_.tolerance * scale;
+  double delta = delta_, previous = 0.0;  // previous: of the direction in c_; 0 begins anew
+  double seen = std::sqrt(delta);         // of the last residual that came from A itself
+  double begin = seen, aim = limit;       // of this part of the loop: where it began, what it had to reach
+  bool is_true = true, is_indefinite = false;
+  result.start_value = begin / scale;
   if (coefficients) *coefficients = {};
-  while (delta > limit && result.iterations < max_iterations) {
-    factor_.solve_backward(result.iterations == 0 ? 0.0 : delta / previous, c_);
-    const double curvature = multiply_dot(a, c_, q_);
+  std::ranges::fill(p_, 0.0);
+  const auto end_part = [&] {
+    if (system.rho >= 0.0) bound_iterations_ += core_iteration_bound(system.rho, begin / scale, aim / scale);
+  };
+  while (true) {
+    const double size = std::sqrt(std::abs(delta));
+    if (!(size > limit) && (is_true || rounding * seen <= harmless_share * limit)) break;
+    if (aim = std::max(limit, look_above * rounding * seen); !is_true && size <= aim) {
+      residual(system, x);
+      const double now = std::sqrt(factor_.solve_forward(r_));
+      if (!(now < std::max(limit, least_gain * seen))) {
+        result.status = {Outcome::breakdown,
+                         fmt::format("the factor in single precision left {:.2g} of the residual after {} iterations", now / seen, result.iterations)};
+        break;
+      }
+      if (now > as_believed * size) end_part(), begin = now, previous = 0.0;
+      delta = now * now, seen = now, is_true = true;
+      continue;
+    }
+    if (!(size > limit) || result.iterations >= max_iterations) break;
+    const double beta = previous == 0.0 ? 0.0 : delta / previous;
+    factor_.solve_backward(beta, c_);
+    const double curvature = remainder_.advance(beta, r_, c_, p_, q_);
     if (!(curvature > 0.0)) {
       is_indefinite = true;
       break;
     }
     const double alpha = delta / curvature;
     step_along(alpha, c_, q_, x, r_);
-    if (watch_factor && result.iterations % check_every == check_every - 1) {
-      const double quality = factor_quality(a);
-      if (!(std::abs(quality - 1.0) < worst_quality)) {
-        result.iterations += 1;
-        result.stop_value = relative(delta);
-        result.status = {Outcome::breakdown,
-                         fmt::format("after {} iterations the factor in single precision is wrong by {:.2g} along the search direction",
-                                     result.iterations, quality - 1.0)};
-        return result;
-      }
-    }
+    is_true = false;
     previous = delta;
     delta = factor_.solve_forward(r_);
     ++result.iterations;
     if (coefficients) coefficients->alpha.push_back(alpha), coefficients->beta.push_back(delta / previous);
-    if (observer) observer(done + result.iterations, relative(delta), x);
+    if (observer) observer(done + result.iterations, std::sqrt(std::abs(delta)) / scale, x);
   }
-  result.stop_value = relative(delta);
+  aim = limit;
+  end_part();
+  result.stop_value = std::sqrt(std::abs(delta)) / scale;
+  if (!result.status.ok()) return result;
   if (!std::isfinite(delta)) {
     result.status = {Outcome::not_finite, fmt::format("the residual is not finite after {} iterations", result.iterations)};
   } else if (is_indefinite) {
     result.status = {
         Outcome::not_positive_definite,
         fmt::format("a search direction of curvature <= 0 after {} iterations: the matrix is not positive definite", result.iterations)};
-  } else if (delta > limit) {
+  } else if (result.stop_value > options_.tolerance) {
     result.status = {Outcome::max_iterations,
                      fmt::format("{} iterations reach {:.3g}, not {:.3g}", result.iterations, result.stop_value, options_.tolerance)};
   }
@@ -140,32 +152,29 @@ KrylovResult CoreFast::iterate(const BlockCsr& a, std::span<double> x, int done,
 void CoreFast::run(const LinearSystem& system, std::span<double> x, SolveSummary& summary) {
   const BlockCsr& a = *system.matrix;
   Timer timer;
-  initial_guess(system, x);
-  if (!analyze_if_new(system, summary)) return;
+  if (!analyze_if_new(system, summary)) return initial_guess(system, x);
   summary.order_ms = timer.lap();
-  for (auto* v : {&load_, &r_, &c_, &q_}) v->resize(x.size());
+  for (auto* v : {&load_, &r_, &c_, &p_, &q_}) v->resize(x.size());
   load_without_prescribed(system, load_);
   summary.reduce_ms = timer.lap();
 
-  if (system.guess.empty()) {
-    starts_at_rest_ = true;
-    std::ranges::copy(load_, r_.begin());
-  } else {
-    residual(system, x);
-  }
+  start(system, x);
   summary.solve_ms = timer.lap();
+  // First: it reads A from end to end, for the factorisation, which does so in another order.
+  remainder_.update(a);
   const bool in_single = factorize(CholeskyPrecision::single_precision, system, summary);
   if (!in_single && !begin_in_double(system, summary)) return;
   summary.factor_ms = timer.lap();
 
   const int limit = iteration_limit(a.dofs());
   KrylovResult result;
+  bound_iterations_ = 0;
   if (delta0_ == 0.0) {
     LinearSystem from_rest = system;
     from_rest.guess = {};
     initial_guess(from_rest, x);
   } else {
-    result = iterate(a, x, 0, limit, in_single);
+    result = iterate(system, x, 0, limit, in_single);
   }
   summary.solve_ms += timer.lap();
   const int done = result.iterations;
@@ -174,18 +183,20 @@ void CoreFast::run(const LinearSystem& system, std::span<double> x, SolveSummary
     summary.status = first.status;
     if (!all_finite(x)) initial_guess(system, x);
     residual(system, x);
+    starts_at_rest_ = false;
     if (!begin_in_double(system, summary)) return;
     summary.factor_ms += timer.lap();
-    result = iterate(a, x, done, limit - done, false);
+    result = iterate(system, x, done, limit - done, false);
     result.iterations += done;
     result.start_value = first.start_value;
     summary.solve_ms += timer.lap();
   }
   take_over(result, summary);
-  if (system.rho >= 0.0) summary.bound_iterations = core_iteration_bound(system.rho, summary.start_value, options_.tolerance);
+  if (system.rho >= 0.0) summary.bound_iterations = bound_iterations_;
   summary.factor_nonzeros = factor_.statistics().nonzeros;
   summary.factor_flops = factor_.statistics().flops;
-  summary.memory_bytes = factor_.statistics().bytes + 4.0 * sizeof(double) * static_cast<double>(x.size());
+  summary.left_out_nonzeros = static_cast<double>(remainder_.nonzeros());
+  summary.memory_bytes = factor_.statistics().bytes + static_cast<double>(remainder_.bytes()) + 5.0 * sizeof(double) * static_cast<double>(x.size());
 }
 
 }  // namespace taut

@@ -25,7 +25,7 @@ BlockCsr permuted(const BlockCsr& a, std::span<const Index> perm) {
   for (Index k = 0; k <= n; ++k) dof_start[k] = k;
   for (Index k = 0; k < n; ++k) row_start[k + 1] = row_start[k] + p.width(node_of[perm[k]]);
   std::vector<Index> column(static_cast<std::size_t>(row_start[n]));
-  std::vector<double> values(column.size());
+  LargeVector<double> values(column.size());
   parallel_for(n, 2048, [&](Index begin, Index end) {
     for (Index k = begin; k < end; ++k) {
       const Index i = node_of[perm[k]], r = perm[k] - p.dof_start[i];

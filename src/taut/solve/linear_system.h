@@ -8,6 +8,9 @@
 //   constraints  S and U; null: none
 //   z            3N doubles, the prescribed part of x (its free part is ignored); may be empty without constraints
 //   guess        3N doubles, last step's x, or empty; iterative methods start at S guess + (I-S) z (Ascher & Boxerman 2003)
+//   guess_is_iterate    the guess is no last step's x but one for this very system: Newton's last, or what another method has left
+//   stiffness    σ, what the elements can add to a node's diagonal block, relative to its mass: |A_ii| <= (1 + σ) m_i; tells how exact a
+//                factor in single precision is (solve/core_fast.h). Negative: not known
 //   positions    3N doubles, m, where the nodes are; or empty. Only multigrid uses them: for the rotations in its near-null space
 //   core         one byte per block of A, 1 for the blocks of the matrix core (paper Section 6); empty: only block-diagonal blocks
 //   rho          ρ of docs/mathematics.md, 5 for that core: what the blocks outside it add to the diagonal, relative to the masses; bounds
@@ -31,6 +34,8 @@ struct LinearSystem {
   const ConstraintSet* constraints = nullptr;
   std::span<const double> z;
   std::span<const double> guess;
+  bool guess_is_iterate = false;
+  double stiffness = -1.0;
   std::span<const double> positions;
   std::span<const std::uint8_t> core;
   double rho = -1.0;
@@ -57,6 +62,7 @@ struct SolveSummary {
   double solve_ms = 0.0;         // the loop, or the triangular solves
   double factor_nonzeros = 0.0;  // entries of the sparse Cholesky factor, and operations to form it; 0 where there is none
   double factor_flops = 0.0;
+  double left_out_nonzeros = -1.0;   // of A outside the core as it was factorised; negative: the method does not tell
   int preparations = 1;              // of the preconditioner: more than one where IC(0) had to find a shift
   CoreUsed core = CoreUsed::own;     // of a method that has one
   const char* precision = "double";  // of the factor that the answer came from: "single" or "double"

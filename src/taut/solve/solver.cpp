@@ -160,7 +160,7 @@ SolveSummary ConstrainedSolver::solve(const LinearSystem& system, std::span<doub
   }
   if (!all_finite(system.guess)) {
     LinearSystem unguessed = system;
-    unguessed.guess = {};
+    unguessed.guess = {}, unguessed.guess_is_iterate = false;
     summary = solve(unguessed, x);
     summary.remark += summary.remark.empty() ? "" : "; ";
     summary.remark += "the initial guess held NaN or infinity and was left out";

@@ -5,6 +5,13 @@
 
 namespace taut {
 
+namespace {
+
+// Share of the blocks outside a sheet's core that have no place in its factor, measured on grids.
+constexpr double outside_fill = 0.31;
+
+}  // namespace
+
 SystemSize size_of(const LinearSystem& system) {
   const BlockPattern& p = *system.matrix->pattern;
   SystemSize size;
@@ -24,16 +31,23 @@ SystemSize size_of(const LinearSystem& system) {
 FactorSize estimate_factor(const SystemSize& size, double nonzeros) {
   const double n = std::max(2.0, size.nodes), area = std::pow(size.unknowns / n, 2);
   const double neighbours = nonzeros / (area * n) - 1.0;
-  if (neighbours < 0.5) return {size.unknowns, size.unknowns};
+  if (neighbours < 0.5) return {size.unknowns, size.unknowns, size.nonzeros - nonzeros};
   const double width = neighbours / 4.0;
   return {1.4 * std::pow(width, 1.12) * area * n * std::log2(n),
-          8.5 * std::pow(width, 1.75) * area * (size.unknowns / n) * std::pow(n, 1.5)};
+          8.5 * std::pow(width, 1.75) * area * (size.unknowns / n) * std::pow(n, 1.5), outside_fill * (size.nonzeros - nonzeros)};
 }
 
 namespace {
 
-// Product with Ã, and the loop's dot products and updates.
-double loop_work(const SystemSize& size) { return work_rates.stream * (8.5 * size.nonzeros + (16.0 + 100.0) * size.unknowns); }
+// Product with Ã or a part of it, and the loop's dot products and updates.
+double loop_work(const SystemSize& size, double multiplied) {
+  return work_rates.stream * (8.5 * multiplied + (16.0 + 100.0) * size.unknowns);
+}
+
+// What is left out of the core is copied first.
+double copy_work(const SystemSize& size, const FactorSize& factor) {
+  return work_rates.stream * (8.0 * size.nonzeros + 16.0 * factor.left_out);
+}
 
 double reduction_work(const SystemSize& size) { return work_rates.reduce * 8.0 * size.nonzeros; }
 
@@ -44,17 +58,18 @@ double factor_solve_work(const SystemSize& size, const FactorSize& factor) {
 }  // namespace
 
 MethodWork block_diagonal_work(const SystemSize& size) {
-  return {reduction_work(size) + work_rates.stream * 60.0 * size.unknowns, loop_work(size) + work_rates.stream * 40.0 * size.unknowns};
+  return {reduction_work(size) + work_rates.stream * 60.0 * size.unknowns, loop_work(size, size.nonzeros) + work_rates.stream * 40.0 * size.unknowns};
 }
 
 MethodWork incomplete_work(const SystemSize& size, double nonzeros, double preparations) {
   return {reduction_work(size) + preparations * work_rates.incomplete_setup * 8.0 * nonzeros,
-          loop_work(size) + work_rates.incomplete * 8.0 * nonzeros};
+          loop_work(size, size.nonzeros) + work_rates.incomplete * 8.0 * nonzeros};
 }
 
 MethodWork core_work(const SystemSize& size, const FactorSize& factor, double preparations) {
   const double once = 0.5 * (work_rates.factor * factor.flops + work_rates.factor_entry * factor.nonzeros);
-  return {once * (1.0 + 2.0 * (preparations - 1.0)), loop_work(size) + factor_solve_work(size, factor)};
+  return {copy_work(size, factor) + once * (1.0 + 2.0 * (preparations - 1.0)),
+          loop_work(size, factor.left_out) + factor_solve_work(size, factor)};
 }
 
 MethodWork direct_work(const FactorSize& factor) {

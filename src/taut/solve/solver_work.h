@@ -38,6 +38,7 @@ SystemSize size_of(const LinearSystem& system);
 // nonzeros of the factor and operations, known from an analysis or else estimated.
 struct FactorSize {
   double nonzeros = 0.0, flops = 0.0;
+  double left_out = 0.0;  // nonzeros of Ã outside a core and its factor's fill
   bool known() const { return nonzeros > 0.0; }
 };
 // Nested dissection of a sheet whose matrix has this many nonzeros, fitted to the cores of grids with 4 to 12 neighbours a node: the more

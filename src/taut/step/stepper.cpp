@@ -54,13 +54,14 @@ Stepper::Stepper(Index nodes, std::vector<const ForceModel*> models, ExternalFor
   for (auto* field : {&b_, &rhs_, &z_, &unknown_, &x_end_, &v_end_, &impulse_}) field->assign(n, Vec3::Zero());
 }
 
-std::vector<std::uint8_t> Stepper::chosen_core(double h) const {
+std::vector<double> Stepper::block_bounds(double h) const {
   // An integrator's first step has the largest coefficients.
   const State first;
-  return taut::choose_core(
-      *assembler_.pattern(),
-      assembler_.block_bounds(integrator_->stiffness_coefficient(first, h), integrator_->damping_coefficient(first, h)),
-      external_.masses());
+  return assembler_.block_bounds(integrator_->stiffness_coefficient(first, h), integrator_->damping_coefficient(first, h));
+}
+
+std::vector<std::uint8_t> Stepper::chosen_core(double h) const {
+  return taut::choose_core(*assembler_.pattern(), block_bounds(h), external_.masses());
 }
 
 Index Stepper::core_springs(CoreUsed core) const {
@@ -71,6 +72,7 @@ Index Stepper::core_springs(CoreUsed core) const {
 
 void Stepper::choose_core(double h) {
   core_h_ = h;
+  if (wants_rho_) stiffness_ = stiffness_ratio(*assembler_.pattern(), block_bounds(h), external_.masses());
   if (!chooses_core_) return;
   core_ = chosen_core(h);
   core_springs_ = assembler_.elements_in(core_);
@@ -89,6 +91,7 @@ void Stepper::begin(const State& state, double h) {
   integrator_->assemble(assembler_, external_, state, h, a_, b_);
   guess_ = state.last;
   current_guess_ = guess_;
+  guess_is_iterate_ = false;
   current_a_ = &a_;
   if (wants_rho_) measure_rho(), first_rho_ = rho_, first_stretch_rho_ = stretch_rho_;
   assemble_ms_ = timer.milliseconds();
@@ -105,6 +108,7 @@ SolveSummary Stepper::solve(const ConstraintSet& constraints, std::span<const Ve
   current_a_ = &a_;
   rho_ = first_rho_, stretch_rho_ = first_stretch_rho_;
   current_guess_ = guess_;
+  guess_is_iterate_ = false;
   newton_iterations_ = 0;
   SolveSummary summary = solver.solve(system(), flat(unknown_));
   if (integrator_->is_nonlinear() && summary.status.ok()) summary = solve_nonlinear(constraints, solver, std::move(summary));
@@ -135,6 +139,7 @@ SolveSummary Stepper::solve_nonlinear(const ConstraintSet& constraints, Constrai
       },
       [&](std::span<Vec3> u) {
         current_guess_.assign(u.begin(), u.end());
+        guess_is_iterate_ = true;
         return solver.solve(system(), flat(u));
       },
   };
@@ -183,6 +188,8 @@ LinearSystem Stepper::system() const {
   system.constraints = constraints_;
   system.z = flat(z_);
   system.guess = flat(current_guess_);
+  system.guess_is_iterate = guess_is_iterate_;
+  system.stiffness = stiffness_;
   system.core = core_;
   system.rho = rho_;
   system.stretch_core = stretch_core_;

@@ -76,6 +76,7 @@ class Stepper {
   double relinearise(const ConstraintSet& constraints, std::span<const Vec3> unknown);
   double free_norm(const ConstraintSet& constraints, std::span<const Vec3> momentum) const;
   void measure_rho();
+  std::vector<double> block_bounds(double h) const;
   void forget_other_unknown(State& state, const std::string& solved_for) const;
 
   std::unique_ptr<Integrator> integrator_;
@@ -87,6 +88,7 @@ class Stepper {
   bool chooses_core_, wants_rho_;
   double core_h_ = 0.0;
   double rho_ = -1.0, first_rho_ = -1.0;  // of current_a_ and a_; negative: not asked for
+  double stiffness_ = -1.0;
   double stretch_rho_ = -1.0, first_stretch_rho_ = -1.0;
   std::vector<std::uint8_t> core_;
   std::vector<std::uint8_t> stretch_core_;  // where core_ is another
@@ -100,6 +102,7 @@ class Stepper {
   BlockCsr relinearised_a_;  // of nonlinear integrators; a_ stays for the next solve
   const BlockCsr* current_a_ = nullptr;
   int newton_iterations_ = 0;
+  bool guess_is_iterate_ = false;
   std::vector<Vec3> b_, rhs_, z_, guess_, current_guess_, unknown_, x_end_, v_end_, impulse_, given_;
 };
 

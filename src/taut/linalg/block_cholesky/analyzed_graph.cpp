@@ -13,7 +13,8 @@ AnalyzedGraph analyzed_graph(const BlockPattern& pattern, std::span<const std::u
       number[i] = static_cast<Index>(result.node.size());
       result.node.push_back(i);
       result.weight.push_back(pattern.dim(i));
-      result.diagonal.push_back(pattern.value_start[i] + pattern.block_offset[pattern.diagonal[i]]);
+      result.diagonal.push_back(pattern.block_offset[pattern.diagonal[i]]);
+      result.row_value.push_back(pattern.value_start[i]);
       result.width.push_back(pattern.width(i));
     }
   result.graph.start.push_back(0);
@@ -22,7 +23,7 @@ AnalyzedGraph analyzed_graph(const BlockPattern& pattern, std::span<const std::u
       const Index j = pattern.column[k];
       if (j == i || number[j] < 0 || (!mask.empty() && !mask[k])) continue;
       result.graph.neighbour.push_back(number[j]);
-      result.value.push_back(pattern.value_start[i] + pattern.block_offset[k]);
+      result.value.push_back(pattern.block_offset[k]);
     }
     result.graph.start.push_back(static_cast<Index>(result.graph.neighbour.size()));
   }

@@ -13,9 +13,10 @@ namespace taut {
 
 struct AnalyzedGraph {
   NodeGraph graph;               // of the nodes with unknowns, numbered in A's order; neighbours ascending
-  std::vector<Offset> value;     // per neighbour: where in A's values its block begins ...
-  std::vector<Offset> diagonal;  // ... and per node its diagonal block
-  std::vector<Index> width;      // per node: of its row of A
+  std::vector<Index> value;       // per neighbour: the first column of its block in the node's row of A ...
+  std::vector<Index> diagonal;    // ... and per node of its diagonal block
+  std::vector<Index> width;       // per node: of its row of A
+  std::vector<Offset> row_value;  // per node: where that begins in A's values
   std::vector<Index> node;       // the number of each in A
   std::vector<Index> weight;     // its unknowns, at least 1
   Index rows = 0;                // nodes of A

@@ -21,6 +21,7 @@ class LayoutBuilder {
       layout_.node.push_back(analyzed_.node[i]);
       layout_.node_weight.push_back(analyzed_.weight[i]);
       layout_.node_width.push_back(analyzed_.width[i]);
+      layout_.node_value.push_back(analyzed_.row_value[i]);
     }
     link_children();
     place_ = inverse_permutation(tree_.order);
@@ -89,9 +90,10 @@ class LayoutBuilder {
     }
   }
 
-  void add_block(const FrontShape& shape, Index place, Offset value) {
-    const Index row = row_of_[place], in_slab = row % sizes_.slab_rows;
-    layout_.block.push_back({place, value, row, sizes_.slab_rows - in_slab, shape.panel_offset(row / sizes_.slab_rows) + in_slab});
+  void add_block(const FrontShape& shape, Index place, Index value) {
+    const Index row = row_of_[place], slab = row / sizes_.slab_rows, in_slab = row % sizes_.slab_rows;
+    layout_.block.push_back(
+        {shape.panel_offset(slab) + in_slab, shape.panel_offset(slab + 1), place, value, sizes_.slab_rows - in_slab});
   }
 
   // How the rows of child c lie in its parent, whose rows row_of_ holds.
@@ -152,7 +154,7 @@ FactorLayout make_factor_layout(const SupernodeTree& tree, const AnalyzedGraph& 
 Offset FactorLayout::bytes() const {
   const auto size_of = [](const auto& v) { return static_cast<Offset>(v.size() * sizeof(v[0])); };
   return size_of(front) + size_of(child) + size_of(run) + size_of(spread) + size_of(node) + size_of(node_weight) + size_of(node_width) +
-         size_of(node_column) + size_of(block_start) + size_of(block) + size_of(task);
+         size_of(node_value) + size_of(node_column) + size_of(block_start) + size_of(block) + size_of(task);
 }
 
 }  // namespace taut

@@ -39,11 +39,11 @@ struct Front {
 
 // A block of A below or on the diagonal, in the column of a pivot node.
 struct BlockPlace {
+  Offset offset = 0;       // of the other node's first row in the panel's first column
+  Offset next_slab = 0;    // of the first row of the slab after it there
   Index place = 0;         // of the other node in the order
-  Offset value = 0;        // where the block begins in the analysed matrix's values
-  Index row = 0;           // the other node's first row in the front
-  Index rows_in_slab = 0;  // how many of its rows are in the slab where it begins, or more
-  Offset offset = 0;       // of its first row in the panel's first column
+  Index value = 0;         // first column of the block in the analysed matrix's row of the pivot node
+  Index rows_in_slab = 0;  // how many of the other node's rows are in the slab where it begins, or more
 };
 
 // Fronts begin ... end-1; `shared`: a single one, large enough for several threads.
@@ -59,7 +59,8 @@ struct FactorLayout {
   std::vector<RowSpread> spread;
   std::vector<Index> node;         // per place in the order: the node of A
   std::vector<Index> node_weight;  // per place in the order: its unknowns
-  std::vector<Index> node_width;   // per place in the order: length of the node's row in the analysed matrix
+  std::vector<Index> node_width;   // per place in the order: length of the node's row in the analysed matrix ...
+  std::vector<Offset> node_value;  // ... and where it begins in the matrix's values
   std::vector<Index> node_column;  // per place in the order: first column of the node in its front
   std::vector<Index> block_start;  // per place in the order, into block; nodes + 1
   std::vector<BlockPlace> block;

@@ -13,7 +13,8 @@ using Int = std::int32_t;
 
 // The registers of one block: R/lanes x G accumulators, R/lanes for a column of the first operand, one for the broadcast second operand. A
 // block of the update may be `wide` columns wide. Eight accumulators hide the latency of two multiply-adds a cycle; larger blocks would
-// only pad fronts more, most of which are small.
+// only pad fronts more, most of which are small. Where only half of a slab's rows are wanted, a block has half a slab's: with AVX-512
+// that is a narrower register, of which many processors take two at once.
 #if defined(__AVX512F__)
 constexpr Int register_bytes = 64, block_vectors = 1, group = 4, wide = 8;
 #else
@@ -29,17 +30,21 @@ typedef float FloatVector __attribute__((vector_size(register_bytes)));
 typedef double DoubleVector __attribute__((vector_size(register_bytes)));
 typedef std::int32_t FloatMask __attribute__((vector_size(register_bytes)));
 typedef std::int64_t DoubleMask __attribute__((vector_size(register_bytes)));
+typedef float HalfFloatVector __attribute__((vector_size(register_bytes * block_vectors / 2)));
+typedef double HalfDoubleVector __attribute__((vector_size(register_bytes * block_vectors / 2)));
 
 template <class T>
 struct Simd;
 template <>
 struct Simd<float> {
   using Vector = FloatVector;
+  using Half = HalfFloatVector;
   using Mask = FloatMask;
 };
 template <>
 struct Simd<double> {
   using Vector = DoubleVector;
+  using Half = HalfDoubleVector;
   using Mask = DoubleMask;
 };
 
@@ -54,16 +59,26 @@ constexpr Int panel_columns = 120 / slab_rows<T>* slab_rows<T>;
 
 #define TAUT_INLINE [[gnu::always_inline]] inline
 
-template <class T>
-TAUT_INLINE Vector<T> load(const T* p) {
-  Vector<T> v;
+template <class V, class T>
+TAUT_INLINE V load_as(const T* p) {
+  V v;
   __builtin_memcpy(&v, p, sizeof v);
   return v;
 }
 
 template <class T>
-TAUT_INLINE void store(T* p, Vector<T> v) {
+TAUT_INLINE Vector<T> load(const T* p) {
+  return load_as<Vector<T>>(p);
+}
+
+template <class V, class T>
+TAUT_INLINE void store_as(T* p, V v) {
   __builtin_memcpy(p, &v, sizeof v);
+}
+
+template <class T>
+TAUT_INLINE void store(T* p, Vector<T> v) {
+  store_as(p, v);
 }
 
 template <class T>
@@ -82,35 +97,48 @@ TAUT_INLINE Vector<T> masked(Vector<T> v, Mask<T> mask) {
   return (Vector<T>)((Mask<T>)v & mask);
 }
 
-// A register block: `Columns` columns of the vectors from `First` to the slab's end.
-template <class T, Int First, Int Columns = group>
+template <bool condition, class A, class B>
+struct Select {
+  using Type = A;
+};
+template <class A, class B>
+struct Select<false, A, B> {
+  using Type = B;
+};
+
+// A register block: `Columns` columns of `Halves` halves of a slab, from its half `First` on.
+template <class T, Int First = 0, Int Halves = 2, Int Columns = group>
 struct Block {
-  static constexpr Int vectors = block_vectors - First;
-  Vector<T> v[Columns][vectors];
+  static constexpr Int half = slab_rows<T> / 2, row = First * half;
+  using Register = typename Select<Halves == 1, typename Simd<T>::Half, Vector<T>>::Type;
+  static constexpr Int count = static_cast<Int>(sizeof(Register) / sizeof(T)), vectors = Halves * half / count;
+  Register v[Columns][vectors];
 
   TAUT_INLINE void load_from(const T* column) {
     for (Int j = 0; j < Columns; ++j)
-      for (Int i = 0; i < vectors; ++i) v[j][i] = load(column + j * slab_rows<T> + (First + i) * lanes<T>);
+      for (Int i = 0; i < vectors; ++i) v[j][i] = load_as<Register>(column + j * slab_rows<T> + row + i * count);
   }
   TAUT_INLINE void store_to(T* column) const {
     for (Int j = 0; j < Columns; ++j)
-      for (Int i = 0; i < vectors; ++i) store(column + j * slab_rows<T> + (First + i) * lanes<T>, v[j][i]);
+      for (Int i = 0; i < vectors; ++i) store_as(column + j * slab_rows<T> + row + i * count, v[j][i]);
   }
   TAUT_INLINE void clear() {
     for (Int j = 0; j < Columns; ++j)
-      for (Int i = 0; i < vectors; ++i) v[j][i] = Vector<T>{};
+      for (Int i = 0; i < vectors; ++i) v[j][i] = Register{};
   }
-  // Rows of the slab above `row`, which lies in the first vector, become 0.
-  TAUT_INLINE void clear_above(Int row) {
-    const Mask<T> keep = lane_numbers<T>() >= row - First * lanes<T>;
-    for (Int j = 0; j < Columns; ++j) v[j][0] = masked<T>(v[j][0], keep);
+  // Rows of the slab above `above`, which lies in the block's first register, become 0.
+  TAUT_INLINE void clear_above(Int above) {
+    decltype(Register{} < Register{}) number;
+    for (Int i = 0; i < count; ++i) number[i] = i;
+    const auto keep = number >= above - row;
+    for (Int j = 0; j < Columns; ++j) v[j][0] = (Register)((decltype(number))v[j][0] & keep);
   }
   // v -= A Bᵀ over k columns: a is a slab, b points at the group's first row in another one.
-  TAUT_INLINE void subtract_product(const T* a, const T* b, Int count) {
-    a += First * lanes<T>;
-    for (Int k = 0; k < count; ++k, a += slab_rows<T>, b += slab_rows<T>) {
-      Vector<T> column[vectors];
-      for (Int i = 0; i < vectors; ++i) column[i] = load(a + i * lanes<T>);
+  TAUT_INLINE void subtract_product(const T* a, const T* b, Int columns) {
+    a += row;
+    for (Int k = 0; k < columns; ++k, a += slab_rows<T>, b += slab_rows<T>) {
+      Register column[vectors];
+      for (Int i = 0; i < vectors; ++i) column[i] = load_as<Register>(a + i * count);
 #pragma GCC unroll 8
       for (Int j = 0; j < Columns; ++j) {
         const T factor = b[j];
@@ -157,13 +185,17 @@ TAUT_INLINE Int factor_triangle(T* triangle, double& bad_value) {
   return bad;
 }
 
-// Calls f.template operator()<First>() with the first vector that holds row `row` of a slab.
+// Calls f.template operator()<First, Halves>() with the halves of a slab that hold its rows begin ... end-1.
 template <class T, class Function>
-TAUT_INLINE void from_row(Int row, Function f) {
-  if constexpr (block_vectors > 1) {
-    if (row >= lanes<T>) return f.template operator()<1>();
+TAUT_INLINE void with_rows(Int begin, Int end, Function f) {
+  constexpr Int half = slab_rows<T> / 2;
+  if (begin >= half) {
+    f.template operator()<1, 1>();
+  } else if (end <= half) {
+    f.template operator()<0, 1>();
+  } else {
+    f.template operator()<0, 2>();
   }
-  f.template operator()<0>();
 }
 
 // The part of a panel that eliminate() works on.
@@ -181,7 +213,7 @@ void subtract_earlier_panels(const Panel<T>& panel, T* slab, Int before, Int beg
   constexpr Int r = slab_rows<T>;
   for (Int k = 0; k < before; k += panel_columns<T>)
     for (Int c = begin; c < end; c += group) {
-      Block<T, 0> block;
+      Block<T> block;
       block.load_from(slab + c * r);
       block.subtract_product(slab + k * r, panel.slab(c / r) + c % r + k * r, panel_columns<T>);
       block.store_to(slab + c * r);
@@ -194,7 +226,7 @@ void solve_columns(const Panel<T>& panel, T* slab, Int begin, Int end) {
   constexpr Int r = slab_rows<T>;
   for (Int c = begin; c < end; c += group) {
     const T* pivot_rows = panel.slab(c / r) + c % r;
-    Block<T, 0> block;
+    Block<T> block;
     block.load_from(slab + c * r);
     block.subtract_product(slab + begin * r, pivot_rows + begin * r, c - begin);
     block.solve_triangle(pivot_rows + c * r);
@@ -208,9 +240,9 @@ BadPivot factor_columns(T* slab, Int from, Int begin, Int end) {
   constexpr Int r = slab_rows<T>;
   BadPivot bad;
   for (Int c = begin; c < end && bad.column < 0; c += group) {
-    from_row<T>(c % r, [&]<Int First>() {
+    with_rows<T>(c % r, r, [&]<Int First, Int Halves>() {
       T* pivot_rows = slab + c % r;
-      Block<T, First> block;
+      Block<T, First, Halves> block;
       block.load_from(slab + c * r);
       block.subtract_product(slab + from * r, pivot_rows + from * r, c - from);
       block.clear_above(c % r);
@@ -248,19 +280,21 @@ BadPivot eliminate(const FrontShape& shape, T* values, Int slab_begin, Int slab_
   return {};
 }
 
-// One R x R tile of the update, or on the diagonal its lower part.
+// One R x R tile of the update, or on the diagonal its lower part: the rows and columns that the front has.
 template <class T>
 void form_tile(const FrontShape& shape, const T* panel, T* update, Int row_slab, Int column_slab) {
   constexpr Int r = slab_rows<T>;
   const T* rows = panel + shape.panel_offset(row_slab);
   const T* others = panel + shape.panel_offset(column_slab);
   T* out = update + shape.update_offset(row_slab);
-  const Int first = r * column_slab > shape.columns ? r * column_slab : shape.columns, last = r * (column_slab + 1);
+  const bool is_diagonal = row_slab == column_slab;
+  const Int first = r * column_slab > shape.columns ? r * column_slab : shape.columns, end_row = shape.rows - r * row_slab;
+  const Int last = r * (column_slab + 1) < shape.rows ? r * (column_slab + 1) : shape.rows;
   for (Int k = 0; k < shape.columns || k == 0; k += panel_columns<T>) {
     const Int count = shape.columns - k < panel_columns<T> ? shape.columns - k : panel_columns<T>;
     const auto form_columns = [&]<Int Columns>(Int c) __attribute__((always_inline)) {
-      from_row<T>(row_slab == column_slab ? c % r : 0, [&]<Int First>() {
-        Block<T, First, Columns> block;
+      with_rows<T>(is_diagonal ? c % r : 0, end_row, [&]<Int First, Int Halves>() {
+        Block<T, First, Halves, Columns> block;
         T* column = out + (c - shape.columns) * r;
         k == 0 ? block.clear() : block.load_from(column);
         block.subtract_product(rows + k * r, others + k * r + c % r, count);
@@ -269,7 +303,8 @@ void form_tile(const FrontShape& shape, const T* panel, T* update, Int row_slab,
     };
     Int c = first;
     for (; c % wide != 0; c += group) form_columns.template operator()<group>(c);
-    for (; c < last; c += wide) form_columns.template operator()<wide>(c);
+    for (; c + group < last; c += wide) form_columns.template operator()<wide>(c);
+    if (c < last) form_columns.template operator()<group>(c);
   }
 }
 

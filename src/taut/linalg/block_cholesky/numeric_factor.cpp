@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "taut/base/parallel.h"
+#include "taut/base/simd.h"
 
 namespace taut {
 
@@ -20,6 +21,7 @@ NumericFactor<T>::NumericFactor(const SupernodeTree& tree, const AnalyzedGraph& 
   bad_pivot_.resize(layout_.front.size());
   for (auto& parts : norm2_) parts.resize(layout_.front.size());
   dim_.resize(layout_.node.size());
+  is_plain_.resize(layout_.node.size());
   basis_of_.resize(layout_.node.size());
   plan();
 }
@@ -39,6 +41,7 @@ void NumericFactor<T>::take_dims(const FactorSource& source) {
     const Index node = layout_.node[k];
     dim_[k] = basis.dim.empty() ? source.a.pattern->dim(node) : basis.dim[node];
     basis_of_[k] = -1;
+    is_plain_[k] = dim_[k] == 3;
     if (basis.dim.empty() || dim_[k] == 3) continue;
     basis_of_[k] = static_cast<Index>(basis_.size());
     basis_.push_back(basis.frame[node]);
@@ -113,10 +116,8 @@ namespace {
 // How many nodes ahead rows of A are asked for: they are taken in the order of elimination, from all over A.
 constexpr Index rows_ahead = 3;
 
-// `diagonal` is somewhere in the row.
-void prefetch_row(const double* diagonal, Index width) {
-  for (Index r = 0; r < 3; ++r)
-    for (Index k = -width / 2; k < width / 2; k += 8) __builtin_prefetch(diagonal + r * width + k);
+void prefetch_row(const double* row, Index width) {
+  for (Index k = 0; k < 3 * width; k += 8) __builtin_prefetch(row + k);
 }
 
 }  // namespace
@@ -127,7 +128,7 @@ void NumericFactor<T>::assemble(const FactorSource& source, const Front& front, 
   const auto set_one = [&](Index j) { panel[front.shape.panel_offset(j / r) + Offset{j} * r + j % r] = T(1); };
   for (Index k = front.first_node; k < front.last_node; ++k) {
     if (const Index later = k + rows_ahead; later < static_cast<Index>(layout_.node.size()) && source.pattern_is_analyzed)
-      prefetch_row(source.a.values.data() + layout_.block[layout_.block_start[later]].value, layout_.node_width[later]);
+      prefetch_row(source.a.values.data() + layout_.node_value[later], layout_.node_width[later]);
     assemble_node(source, front, k, panel);
     for (Index j = dim_[k]; j < layout_.node_weight[k]; ++j) set_one(layout_.node_column[k] + j);
   }
@@ -144,10 +145,31 @@ void project(const Mat3* left, Index rows, const Mat3* right, Index columns, dou
   if (right) b.leftCols(columns) = (b * right->leftCols(columns)).eval();
 }
 
-// Where the block of two nodes begins in A's values, or -1; for a matrix that has not the analysed pattern itself.
-Offset find_block(const BlockPattern& p, Index node, Index other) {
+// The first column of the block of two nodes in A's row of the first, or -1; for a matrix that has not the analysed pattern itself.
+Index find_block(const BlockPattern& p, Index node, Index other) {
   const Index k = p.find(node, other);
-  return k < 0 ? -1 : p.value_start[node] + p.block_offset[k];
+  return k < 0 ? -1 : p.block_offset[k];
+}
+
+// A block, turned; of one on the diagonal the lower triangle.
+template <class T>
+TAUT_ALWAYS_INLINE void put_block(const BlockPlace& place, const double* block, Index width, Index rows, Index columns, bool is_diagonal,
+                                  T* column, Index r) {
+  for (Index i = 0; i < rows; ++i) {
+    T* to = column + (i < place.rows_in_slab ? place.offset + i : place.next_slab + i - place.rows_in_slab);
+    for (Index j = 0; j < (is_diagonal ? i + 1 : columns); ++j) to[j * r] = static_cast<T>(block[j * width + i]);
+  }
+}
+
+// Three numbers, rounded to T. Reads a fourth and adds nothing to the fourth place.
+template <class T>
+TAUT_ALWAYS_INLINE void add_three(const double* from, T* to) {
+  typedef double Doubles __attribute__((vector_size(32), aligned(8), may_alias));
+  typedef std::int64_t Mask __attribute__((vector_size(32)));
+  typedef T Four __attribute__((vector_size(4 * sizeof(T)), aligned(sizeof(T)), may_alias));
+  const Mask first_three = {-1, -1, -1, 0};
+  const auto three = (Doubles)((Mask) * reinterpret_cast<const Doubles*>(from) & first_three);
+  *reinterpret_cast<Four*>(to) += __builtin_convertvector(three, Four);
 }
 
 }  // namespace
@@ -156,37 +178,39 @@ Offset find_block(const BlockPattern& p, Index node, Index other) {
 template <class T>
 void NumericFactor<T>::assemble_node(const FactorSource& source, const Front& front, Index k, T* panel) const {
   const BlockPattern& p = *source.a.pattern;
-  const Index node = layout_.node[k], dim = dim_[k], r = front.shape.slab_rows;
-  if (dim == 0) return;
-  const Index row_length = source.pattern_is_analyzed ? layout_.node_width[k] : p.width(node);
+  const Index node = layout_.node[k], r = front.shape.slab_rows;
+  if (dim_[k] == 0) return;
+  const Index width = source.pattern_is_analyzed ? layout_.node_width[k] : p.width(node);
+  const double* row = source.a.values.data() + (source.pattern_is_analyzed ? layout_.node_value[k] : p.value_start[node]);
   T* column = panel + Offset{layout_.node_column[k]} * r;
   for (Index e = layout_.block_start[k]; e < layout_.block_start[k + 1]; ++e) {
     const BlockPlace& place = layout_.block[e];
-    const Offset value = source.pattern_is_analyzed ? place.value : find_block(p, node, layout_.node[place.place]);
+    const Index value = source.pattern_is_analyzed ? place.value : find_block(p, node, layout_.node[place.place]);
     if (value < 0) continue;
-    const double* block = source.a.values.data() + value;
-    Index width = row_length;
-    const Index other_dim = dim_[place.place], basis = basis_of_[k], other_basis = basis_of_[place.place];
-    double projected[9];
-    if (basis >= 0 || other_basis >= 0) {
-      for (Index j = 0; j < 3; ++j)
-        for (Index i = 0; i < 3; ++i) projected[3 * j + i] = block[j * width + i];
-      project(basis >= 0 ? &basis_[basis] : nullptr, dim, other_basis >= 0 ? &basis_[other_basis] : nullptr, other_dim, projected);
-      block = projected, width = 3;
-    }
-    const bool is_diagonal = place.place == k;
-    if (!is_diagonal && dim == 3 && other_dim == 3 && place.rows_in_slab >= 3) {
-      T* to = column + place.offset;
-      for (Index j = 0; j < 3; ++j, to += r, block += width)
-        for (Index i = 0; i < 3; ++i) to[i] = static_cast<T>(block[i]);
-      continue;
-    }
-    for (Index i = 0; i < other_dim; ++i) {
-      T* to =
-          i < place.rows_in_slab ? column + place.offset + i : column + front.shape.panel_offset((place.row + i) / r) + (place.row + i) % r;
-      for (Index j = 0; j < dim && (!is_diagonal || j <= i); ++j) to[j * r] = static_cast<T>(block[j * width + i]);
+    const double* block = row + value;
+    if (!is_plain_[k] || !is_plain_[place.place]) {
+      assemble_projected(place, k, block, width, column, r);
+    } else if (place.place != k && place.rows_in_slab > 3 && value + 3 < width) {
+      // Four are read and written in each column of the block: there are as many.
+      for (Index j = 0; j < 3; ++j) add_three(block + j * width, column + place.offset + j * r);
+    } else {
+      put_block(place, block, width, 3, 3, place.place == k, column, r);
     }
   }
+}
+
+// Blocks of any size, projected where a node has a basis of its own.
+template <class T>
+void NumericFactor<T>::assemble_projected(const BlockPlace& place, Index k, const double* block, Index width, T* column, Index r) const {
+  const Index dim = dim_[k], other_dim = dim_[place.place], basis = basis_of_[k], other_basis = basis_of_[place.place];
+  double projected[9];
+  if (basis >= 0 || other_basis >= 0) {
+    for (Index j = 0; j < 3; ++j)
+      for (Index i = 0; i < 3; ++i) projected[3 * j + i] = block[j * width + i];
+    project(basis >= 0 ? &basis_[basis] : nullptr, dim, other_basis >= 0 ? &basis_[other_basis] : nullptr, other_dim, projected);
+    block = projected, width = 3;
+  }
+  put_block(place, block, width, other_dim, dim, place.place == k, column, r);
 }
 
 template <class T>

@@ -78,6 +78,7 @@ class NumericFactor {
   void eliminate(const FactorSource& source, Index s, bool shared);
   void assemble(const FactorSource& source, const Front& front, T* panel) const;
   void assemble_node(const FactorSource& source, const Front& front, Index k, T* panel) const;
+  void assemble_projected(const BlockPlace& place, Index k, const double* block, Index width, T* column, Index slab_rows) const;
   void add_children(const Front& front, T* target, bool target_is_panel);
   BadPivot factor_panel(const Front& front, T* panel, bool shared) const;
   void form_update(const Front& front, const T* panel, bool shared);
@@ -96,6 +97,7 @@ class NumericFactor {
   std::vector<BadPivot> bad_pivot_;           // per front
   std::array<std::vector<double>, 2> norm2_;  // per front: of its part of y
   std::vector<Index> dim_;                    // per place in the order: unknowns of the node in the factorised matrix
+  std::vector<std::uint8_t> is_plain_;        // per place: three unknowns, without a basis of their own
   std::vector<Index> basis_of_;               // per place: its Q_i in basis_, or -1: the identity
   std::vector<Mat3> basis_;
 };
