@@ -109,6 +109,33 @@ TEST_P(BlockFactorBasis, SolvesThePartInTheBasis) {
   }
 }
 
+// Blocks outside the mask that the factor has a place for: taken in, the factor stays as large.
+TEST_P(BlockFactorBasis, TakesInWhatHasAPlace) {
+  Random random(4);
+  int taken = 0, left = 0;
+  for (const Index nodes : {5, 40, 140}) {
+    BasisCase c = random_case(random, nodes);
+    ASSERT_TRUE(cholesky_.analyze(c.a.pattern, c.mask).ok());
+    const BlockCholeskyStatistics without = cholesky_.block_statistics();
+    ASSERT_TRUE(cholesky_.analyze(c.a.pattern, c.mask, BlocksLeftOut::without_place).ok());
+    const BlockCholeskyStatistics with = cholesky_.block_statistics();
+    EXPECT_EQ(with.factor_entries, without.factor_entries);
+    EXPECT_EQ(with.panel_bytes, without.panel_bytes);
+    EXPECT_EQ(with.padded_flops, without.padded_flops);
+
+    const std::vector<std::uint8_t> blocks(cholesky_.analyzed_blocks().begin(), cholesky_.analyzed_blocks().end());
+    ASSERT_EQ(blocks.size(), c.mask.size());
+    for (std::size_t k = 0; k < blocks.size(); ++k) {
+      EXPECT_GE(blocks[k], c.mask[k]);
+      taken += blocks[k] > c.mask[k], left += blocks[k] == 0;
+    }
+    c.mask = blocks;
+    expect_solves(cholesky_, c, random, tolerance(), 1.0);
+  }
+  EXPECT_GT(taken, 20);
+  EXPECT_GT(left, 20);
+}
+
 TEST_P(BlockFactorBasis, WithoutBasisAndMask) {
   Random random(2);
   const BlockCsr a = random_spd(random, make_pattern(random_graph(random, 50, 3, 20), random_dims(random, 50)), 1e-2);

@@ -123,7 +123,7 @@ TEST(AutoSolver, TakesThePapersCoreWhereItCostsLess) {
 
 // Where every spring is strong, a core that leaves some out costs more than all of them: the direct solve, in single precision.
 TEST(AutoSolver, TakesAllSpringsWhereAllAreStrong) {
-  MaterialSheet sheet({.k_stretch = 6000, .k_shear = 600, .k_bend = 60, .h = 3.67e-3, .nodes = 41}, 65);
+  MaterialSheet sheet({.k_stretch = 6e3, .k_shear = 6e4, .k_bend = 6e3, .h = 3.67e-3, .nodes = 41}, 65);
   sheet.hold_some();
   const LinearSystem system = sheet.with_core(sheet.stretch);
   const auto solver = make_solver(solver_options("auto", 1e-3));

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
+
 #include "taut/force/cloth_springs.h"
 #include "taut/solve/core_bound.h"
 #include "taut/step/stepper.h"
@@ -52,6 +54,25 @@ TEST(StepperCore, IsTheStretchSpringsOrChosen) {
       EXPECT_EQ(stepper.core_springs(), stretch);
     }
     EXPECT_EQ(stepper.system().rho, remainder_ratio(stepper.matrix(), stepper.core_mask(), cloth.masses));
+  }
+}
+
+// |A_ii| <= (1 + σ) m_i in any state, and not far above it.
+TEST(StepperCore, BoundsTheStiffness) {
+  for (const IntegratorKind kind : {IntegratorKind::semi_implicit_euler, IntegratorKind::bdf2}) {
+    Cloth cloth;
+    Stepper stepper = cloth.stepper("core_fast", "", kind);
+    stepper.begin(cloth.state, 5e-3);
+    const BlockCsr& a = stepper.matrix();
+    double largest = 0.0;
+    for (Index i = 0; i < a.rows(); ++i) {
+      Mat3 diagonal;
+      for (int r = 0; r < 3; ++r)
+        for (int c = 0; c < 3; ++c) diagonal(r, c) = a.block(i, a.pattern->diagonal[i])[r * a.pattern->width(i) + c];
+      largest = std::max(largest, Eigen::SelfAdjointEigenSolver<Mat3>(diagonal).eigenvalues()[2] / cloth.masses[static_cast<std::size_t>(i)]);
+    }
+    EXPECT_LE(largest, 1.0 + stepper.system().stiffness);
+    EXPECT_GT(largest, 0.2 * stepper.system().stiffness);
   }
 }
 

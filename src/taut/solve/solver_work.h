@@ -9,17 +9,17 @@
 
 namespace taut {
 
-// Taut's kernels relative to each other, seconds a byte and an operation; measured on two cores of an x86-64 server (AVX2), 6,561 and
-// 25,921 nodes (`taut bench roofline --threads 2`).
+// Taut's kernels relative to each other, seconds a byte and an operation; measured within steps on two cores of an x86-64 server (AVX-512),
+// 6,561 and 25,921 nodes (`taut bench roofline --threads 2`).
 struct WorkRates {
-  double stream = 1.0 / 35e9;              // products and vectors: bytes read and written
+  double stream = 1.0 / 40e9;              // products and vectors: bytes read and written
   double reduce = 1.0 / 3.4e9;             // forming Ã: its bytes
   double incomplete = 1.0 / 11e9;          // IC(0)'s solves: bytes of the matrix it is made from; each row waits for the last
   double incomplete_setup = 1.0 / 1.45e9;  // IC(0)'s factorisation: the same bytes
-  double factor = 1.0 / 105e9;             // Cholesky factorisation, operations; in single precision half of it
-  double factor_entry = 2.5e-9;            // ... and its entries, likewise: small fronts are moved more than multiplied
-  double factor_solve = 0.235e-9;          // its two triangular solves: entries of the factor in single precision ...
-  double factor_node = 36e-9;              // ... and nodes
+  double factor = 1.0 / 120e9;             // Cholesky factorisation, operations; in single precision half of it
+  double factor_entry = 2.6e-9;            // ... and its entries, likewise: small fronts are moved more than multiplied
+  double factor_solve = 0.17e-9;           // its two triangular solves: entries of the factor in single precision ...
+  double factor_node = 14e-9;              // ... and nodes
 };
 inline constexpr WorkRates work_rates{};
 
