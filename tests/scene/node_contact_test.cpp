@@ -101,7 +101,7 @@ TEST(NodeContact, KnowsSolidsThatAreMeshes) {
 
 TEST(NodeContact, SameForAnyNumberOfThreadsAndAfterAResume) {
   // With no impulses at all, everything that collides is a zone.
-  const std::vector<std::string> settings{"cloth.grid.nodes=[13,13]", "contact.sweeps=0"};
+  const std::vector<std::string> settings{"cloth.grid.nodes=[17,17]", "contact.sweeps=0"};
   const Scene scene = read_scene(std::string(TAUT_SOURCE_DIR) + "/scenes/clump.toml", settings);
   const int usual = thread_count();
   constexpr int steps = 160, interrupted = 60;

@@ -54,6 +54,7 @@ std::string dump_meta(Simulation& simulation, const SolveSummary& summary) {
                   {"core", scene.solver.chooses_core() ? "auto" : "stretch"},
                   {"core_springs", simulation.stepper().core_springs()},
                   {"rho", simulation.stepper().remainder_ratio()},
+                  {"stiffness", simulation.stepper().system().stiffness},
                   {"unknown", simulation.stepper().integrator().unknown(state)},
                   {"solver", summary.solver},
                   {"tolerance", scene.solver.tolerance},

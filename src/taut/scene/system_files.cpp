@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "taut/base/error.h"
+#include "taut/base/file.h"
 #include "taut/io/matrix_market.h"
 #include "taut/scene/stored_constraints.h"
 #include "taut/solve/core_bound.h"
@@ -34,6 +36,15 @@ BlockCsr in_blocks_of_three(const BlockCsr& scalar, const fs::path& file) {
   return a;
 }
 
+// -1 where an older dump does not tell.
+double stiffness_in(const fs::path& meta) {
+  const std::string text = read_file(meta);
+  const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
+  if (!json.is_object()) throw InputError({meta.string()}, "is no JSON object: the dump is damaged; write it again with `taut dump`");
+  const auto it = json.find("stiffness");
+  return it != json.end() && it->is_number() ? it->get<double>() : -1.0;
+}
+
 }  // namespace
 
 SystemFiles files_of_dump(const fs::path& folder) {
@@ -45,7 +56,8 @@ SystemFiles files_of_dump(const fs::path& folder) {
   const auto if_there = [&](const char* name) { return fs::exists(folder / name) ? folder / name : fs::path(); };
   return {folder / "A.mtx",  folder / "b.mtx",       folder / "U.mtx",
           folder / "z.mtx",  if_there("A_core.mtx"), if_there("guess.mtx"),
-          if_there("x.mtx"), if_there("M.mtx"),      true};
+          if_there("x.mtx"), if_there("M.mtx"),      true,
+          stiffness_in(folder / "meta.json")};
 }
 
 StoredSystem::StoredSystem(const SystemFiles& files) : matrix_(to_system_matrix(read_matrix_market(files.matrix), files.matrix.string())) {
@@ -57,6 +69,7 @@ StoredSystem::StoredSystem(const SystemFiles& files) : matrix_(to_system_matrix(
   } else {
     rhs_ = read_vector(files.rhs, n);
   }
+  stiffness_ = files.stiffness;
   read_constraints(files);
   if (!files.guess.empty()) guess_ = read_vector(files.guess, n);
   if (!files.positions.empty()) positions_ = read_vector(files.positions, n);
@@ -115,7 +128,7 @@ void StoredSystem::read_masses(const fs::path& path) {
   for (const double m : masses)
     if (!(m > 0.0)) throw InputError({path.string()}, fmt::format("holds {:.9g}: masses are positive", m));
   rho_ = remainder_ratio(matrix_, core_, masses);
-  stiffness_ = 0.5 * block_diagonal_condition(matrix_) - 1.0;
+  if (stiffness_ < 0.0) stiffness_ = 0.5 * block_diagonal_condition(matrix_) - 1.0;
 }
 
 LinearSystem StoredSystem::system() const {

@@ -23,6 +23,7 @@ namespace taut {
 struct SystemFiles {
   std::filesystem::path matrix, rhs, constraints, z, core, guess, positions, masses;  // empty: not given
   bool nodes_of_three = false;                                     // constraints imply it
+  double stiffness = -1.0;                                         // LinearSystem::stiffness, where it is known
 };
 
 // The files of a dump. Throws InputError when the folder is none, or not complete.

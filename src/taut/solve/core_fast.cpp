@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "taut/base/parallel.h"
 #include "taut/base/timer.h"
 #include "taut/linalg/vector_ops.h"
 #include "taut/solve/core_bound.h"
@@ -16,17 +17,48 @@ namespace taut {
 
 namespace {
 
-// The rounding that is taken for harmless, as a share of the tolerance; and how far above it, in units of itself, the residual is looked at.
-constexpr double harmless_share = 0.5;
+// How far above the usual rounding, in units of itself, the residual is looked at.
 constexpr double look_above = 2.0;
+// The largest rounding that is taken for harmless, as a share of the error that the stop test allows, and the most that it is taken to allow.
+constexpr double harmless_share = 0.5;
+constexpr double most_allowed = 3.0;  // tolerances
 // The true residual is what was believed if it is at most this many times as large.
 constexpr double as_believed = 2.0;
-// The factor is bad where the true residual is more than this share of the last one.
-constexpr double least_gain = 0.3;
+// With products from A, the factor in single precision is looked at when convergence is slow, and taken for bad when it misjudges a
+// direction's energy by this share: then its rounding, not the springs outside the core, sets the number of iterations.
+constexpr int check_every = 8;
+constexpr double worst_quality = 0.3;
 
-double rounding_of(const LinearSystem& system, bool in_single) {
-  if (!in_single) return 0.0;
-  return system.stiffness >= 0.0 ? 4.0 * 0x1p-24 * std::sqrt(1.0 + system.stiffness) : CoreFast::unknown_rounding;
+// What products of a factor in single precision leave, relative to what the loop began with.
+struct Rounding {
+  double usual = 0.0, worst = 0.0;
+};
+
+Rounding rounding_of(const LinearSystem& system, bool in_single) {
+  constexpr double unit = 0x1p-24;
+  if (!in_single) return {};
+  if (system.stiffness < 0.0) return {CoreFast::unknown_rounding, 1.0};
+  return {4.0 * unit * std::sqrt(1.0 + system.stiffness), 0.22 * unit * (1.0 + system.stiffness)};
+}
+
+// |error|_A / |x|_A where the stop test ends, in tolerances: by the bound on the core's condition.
+double allowed_error(double rho) { return rho >= 0.0 ? std::min(most_allowed, std::sqrt(2.0 * (1.0 + rho))) : 1.0; }
+
+// y = P x: the blocks of the mask.
+void multiply_masked(const BlockCsr& a, std::span<const std::uint8_t> mask, std::span<const double> x, std::span<double> y) {
+  const BlockPattern& p = *a.pattern;
+  parallel_for(p.rows(), 256, [&](Index begin, Index end) {
+    for (Index i = begin; i < end; ++i) {
+      const Index rows = p.dim(i), width = p.width(i);
+      for (Index r = 0; r < rows; ++r) y[p.dof_start[i] + r] = 0.0;
+      for (Index k = p.row_start[i]; k < p.row_start[i + 1]; ++k) {
+        if (!mask[k]) continue;
+        const double* block = a.block(i, k);
+        for (Index r = 0; r < rows; ++r)
+          for (Index c = 0; c < p.dim(p.column[k]); ++c) y[p.dof_start[i] + r] += block[r * width + c] * x[p.column_dof[k] + c];
+      }
+    }
+  });
 }
 
 }  // namespace
@@ -68,6 +100,13 @@ bool CoreFast::begin_in_double(const LinearSystem& system, SolveSummary& summary
   return factorize(CholeskyPrecision::double_precision, system, summary);
 }
 
+// For the search direction c and w = P c: wᵀ P̃⁻¹ w / cᵀ w, which is 1 but for the factor's rounding. Takes q_ for w.
+double CoreFast::factor_quality(const BlockCsr& a) {
+  multiply_masked(a, factor_.analyzed_blocks(), c_, q_);
+  const double energy = dot(c_, q_);
+  return factor_.solve_forward(q_) / energy;
+}
+
 void CoreFast::residual(const LinearSystem& system, std::span<const double> x) {
   multiply_dot(*system.matrix, x, r_);
   residual_from_product(system.rhs, r_);
@@ -88,12 +127,14 @@ void CoreFast::start(const LinearSystem& system, std::span<double> x) {
 
 // Conjugate gradients for the residual in r_, whose forward solve came with the factorisation, from x on; `done` iterations came before.
 KrylovResult CoreFast::iterate(const LinearSystem& system, std::span<double> x, int done, int max_iterations, bool in_single) {
+  const BlockCsr& a = *system.matrix;
   KrylovResult result;
-  const double rounding = rounding_of(system, in_single), scale = std::sqrt(delta0_), limit = options_.tolerance * scale;
+  const Rounding rounding = rounding_of(system, in_single);
+  const double scale = std::sqrt(delta0_), limit = options_.tolerance * scale, harmless = harmless_share * allowed_error(system.rho) * limit;
   double delta = delta_, previous = 0.0;  // previous: of the direction in c_; 0 begins anew
   double seen = std::sqrt(delta);         // of the last residual that came from A itself
   double begin = seen, aim = limit;       // of this part of the loop: where it began, what it had to reach
-  bool is_true = true, is_indefinite = false;
+  bool is_true = true, is_indefinite = false, from_a = false;  // from_a: products are taken from A
   result.start_value = begin / scale;
   if (coefficients) *coefficients = {};
   std::ranges::fill(p_, 0.0);
@@ -102,30 +143,34 @@ KrylovResult CoreFast::iterate(const LinearSystem& system, std::span<double> x, 
   };
   while (true) {
     const double size = std::sqrt(std::abs(delta));
-    if (!(size > limit) && (is_true || rounding * seen <= harmless_share * limit)) break;
-    if (aim = std::max(limit, look_above * rounding * seen); !is_true && size <= aim) {
+    if (!(size > limit) && (is_true || rounding.worst * seen <= harmless)) break;
+    if (aim = std::max(limit, look_above * rounding.usual * seen); !is_true && size <= aim) {
       residual(system, x);
       const double now = std::sqrt(factor_.solve_forward(r_));
-      if (!(now < std::max(limit, least_gain * seen))) {
-        result.status = {Outcome::breakdown,
-                         fmt::format("the factor in single precision left {:.2g} of the residual after {} iterations", now / seen, result.iterations)};
-        break;
-      }
-      if (now > as_believed * size) end_part(), begin = now, previous = 0.0;
+      if (!(now <= as_believed * size)) end_part(), begin = now, previous = 0.0, from_a = true;
       delta = now * now, seen = now, is_true = true;
       continue;
     }
     if (!(size > limit) || result.iterations >= max_iterations) break;
     const double beta = previous == 0.0 ? 0.0 : delta / previous;
     factor_.solve_backward(beta, c_);
-    const double curvature = remainder_.advance(beta, r_, c_, p_, q_);
+    const double curvature = from_a ? multiply_dot(a, c_, q_) : remainder_.advance(beta, r_, c_, p_, q_);
     if (!(curvature > 0.0)) {
       is_indefinite = true;
       break;
     }
     const double alpha = delta / curvature;
     step_along(alpha, c_, q_, x, r_);
-    is_true = false;
+    is_true = from_a;
+    if (from_a && in_single && result.iterations % check_every == check_every - 1) {
+      if (const double quality = factor_quality(a); !(std::abs(quality - 1.0) < worst_quality)) {
+        ++result.iterations;
+        result.status = {Outcome::breakdown,
+                         fmt::format("after {} iterations the factor in single precision is wrong by {:.2g} along the search direction",
+                                     result.iterations, quality - 1.0)};
+        break;
+      }
+    }
     previous = delta;
     delta = factor_.solve_forward(r_);
     ++result.iterations;
