@@ -38,9 +38,11 @@ BlockCsr in_blocks_of_three(const BlockCsr& scalar, const fs::path& file) {
 
 // -1 where an older dump does not tell.
 double stiffness_in(const fs::path& meta) {
-  const std::string text = read_file(meta);
-  const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
-  if (!json.is_object()) throw InputError({meta.string()}, "is no JSON object: the dump is damaged; write it again with `taut dump`");
+  const nlohmann::json json = nlohmann::json::parse(read_file(meta), nullptr, false);
+  if (!json.is_object())
+    throw InputError({meta.string()},
+                     "is no JSON object: it is damaged, or not of `taut dump`; dump the system anew, or name the files (--matrix, --rhs, "
+                     "--constraints, --core)");
   const auto it = json.find("stiffness");
   return it != json.end() && it->is_number() ? it->get<double>() : -1.0;
 }
