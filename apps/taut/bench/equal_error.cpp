@@ -127,10 +127,16 @@ EqualErrorResult measure_equal_error(const LinearSystem& system, const std::stri
   // What a method does once per topology is done in a first solve, which is not timed.
   const auto timed = make_solver(options_for(solver, tolerance, std::max(1, most)));
   timed->solve(system, x);
-  result.summary = median_solve(*timed, system, x);
+  for (std::size_t e = 0; e < wanted_errors.size(); ++e) {
+    const int iterations = watched.iterations[e];
+    if (iterations < 0) continue;
+    if (e == 0 || (!watched.direct && iterations != watched.iterations[e - 1])) {
+      timed->set_limits(tolerance, std::max(1, iterations));
+      result.summary = median_solve(*timed, system, x);
+    }
+    result.to[e] = time_to(iterations, watched.direct, result.summary);
+  }
   result.anorm_error = anorm_error(system, x, reference);
-  for (std::size_t e = 0; e < wanted_errors.size(); ++e)
-    if (watched.iterations[e] >= 0) result.to[e] = time_to(watched.iterations[e], watched.direct, result.summary);
   if (result.to.back().reached()) result.status = {};
   return result;
 }
