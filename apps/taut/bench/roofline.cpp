@@ -11,6 +11,7 @@
 #include "taut/base/timer.h"
 #include "taut/constraint/reduction.h"
 #include "taut/linalg/block_cholesky.h"
+#include "taut/linalg/block_remainder.h"
 #include "taut/linalg/sparse_cholesky.h"
 #include "taut/scene/scene_file.h"
 #include "taut/solve/full_space.h"
@@ -40,7 +41,7 @@ double median_ms(const std::function<void()>& work) {
   return times[repetitions / 2];
 }
 
-double core_bytes(const LinearSystem& system) { return 72.0 * static_cast<double>(std::ranges::count(system.core, std::uint8_t{1})); }
+double bytes_of(std::span<const std::uint8_t> blocks) { return 72.0 * static_cast<double>(std::ranges::count(blocks, std::uint8_t{1})); }
 
 // Flops of one spring's gradient and stiffness, of which damping and the sums into A are a third; an estimate, counted in force/spring_law.cpp.
 constexpr double flops_per_spring_block = 120.0;
@@ -82,21 +83,36 @@ class Phases {
     const char* name = single ? "single" : "double";
     BlockCholesky factor(precision);
     Timer timer;
-    if (const Status status = factor.analyze(system.matrix->pattern, system.core); !status.ok()) throw InputError(status.message);
+    if (const Status status = factor.analyze(system.matrix->pattern, system.core, BlocksLeftOut::without_place); !status.ok())
+      throw InputError(status.message);
     if (single) add("core: analysis, once", 0.0, 0.0, name, timer.milliseconds());
     Status status;
     const double factor_ms = median_ms([&] { status = factor.factorize(*system.matrix, free_basis(system)); });
     if (!status.ok()) throw InputError(status.message);
     const double fused_ms = median_ms([&] { factor.factorize(*system.matrix, free_basis(system), load); });
     const BlockCholeskyStatistics s = factor.block_statistics();
-    add("core: factor", s.flops, s.panel_bytes + core_bytes(system), name, factor_ms);
-    add("core: factor + forward", s.flops + 2.0 * s.factor_entries, s.panel_bytes + core_bytes(system), name, fused_ms);
+    add("core: factor", s.flops, s.panel_bytes + bytes_of(factor.analyzed_blocks()), name, factor_ms);
+    add("core: factor + forward", s.flops + 2.0 * s.factor_entries, s.panel_bytes + bytes_of(factor.analyzed_blocks()), name, fused_ms);
     std::vector<double> x(load.size());
     add("core: forward", 2.0 * s.factor_entries, s.panel_bytes, name, median_ms([&] { factor.solve_forward(load); }));
     add("core: backward", 2.0 * s.factor_entries, s.panel_bytes, name, median_ms([&] {
           factor.solve_forward(load);
           factor.solve_backward(0.0, x);
         }) - rows_.back().milliseconds);
+    if (single) measure_remainder(system, factor.analyzed_blocks());
+  }
+
+  // What core_fast multiplies by instead of A.
+  void measure_remainder(const LinearSystem& system, std::span<const std::uint8_t> blocks) {
+    BlockRemainder remainder;
+    remainder.analyze(system.matrix->pattern, blocks);
+    const std::size_t n = system.rhs.size();
+    std::vector<double> r(n, 1.0), c(n, 1.0), p(n, 0.0), q(n);
+    const double values = static_cast<double>(remainder.nonzeros());
+    add("outside the core: copied", 0.0, 8.0 * static_cast<double>(system.matrix->values.size()) + 8.0 * values, "double",
+        median_ms([&] { remainder.update(*system.matrix); }));
+    add("outside the core: product", 2.0 * values + 5.0 * static_cast<double>(n), 8.0 * values + 6.0 * 8.0 * static_cast<double>(n), "double",
+        median_ms([&] { remainder.advance(0.5, r, c, p, q); }));
   }
 
   void measure_solver(const LinearSystem& system, const char* name, int runs_wanted) {

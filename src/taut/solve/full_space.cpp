@@ -4,6 +4,13 @@
 
 namespace taut {
 
+namespace {
+
+// How many nodes ahead rows of A are asked for: they lie far apart.
+constexpr std::size_t nodes_ahead = 4;
+
+}  // namespace
+
 NodeBasis free_basis(const LinearSystem& system) {
   if (!system.constraints) return {};
   return {system.constraints->ndofs(), system.constraints->frames()};
@@ -14,11 +21,19 @@ void load_without_prescribed(const LinearSystem& system, std::span<double> load)
   if (!system.constraints) return;
   const BlockCsr& a = *system.matrix;
   const BlockPattern& p = *a.pattern;
+  std::vector<std::pair<Index, Vec3>> moving;
   for (Index i = 0; i < p.rows(); ++i) {
     if (system.constraints->ndof(i) == 3) continue;
     const Vec3 z = system.constraints->constrained_part(i, Eigen::Map<const Vec3>(&system.z[3 * static_cast<std::size_t>(i)]));
-    if (z.isZero(0.0)) continue;
+    if (!z.isZero(0.0)) moving.emplace_back(i, z);
+  }
+  for (std::size_t m = 0; m < moving.size(); ++m) {
+    if (m + nodes_ahead < moving.size()) {
+      const Index later = moving[m + nodes_ahead].first;
+      for (Offset k = p.value_start[later]; k < p.value_start[later + 1]; k += 8) __builtin_prefetch(a.values.data() + k);
+    }
     // A is symmetric: its column i is its row i.
+    const auto& [i, z] = moving[m];
     const Index width = p.width(i);
     for (Index k = p.row_start[i]; k < p.row_start[i + 1]; ++k) {
       const double* block = a.block(i, k);
