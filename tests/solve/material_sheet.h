@@ -14,6 +14,8 @@ struct Material {
   double k_stretch = 6000, k_shear = 0.3, k_bend = 0.05, h = 3.67e-3, k_damp = 0.0;
   bool graded = false;  // stiffnesses from 0.01 to 100 times as much, spring by spring, masses from 0.1 to 10 times
   double motion = 1.0;  // of the nodes from their places, in a third of the spacing
+  double stretch = 1.02;
+  bool askew = false;  // along no axis
   double node_mass = 9.5e-6;
   Index nodes = 15;  // along an edge
   std::string describe() const {
@@ -31,9 +33,14 @@ struct MaterialSheet : ConstrainedCase {
   MaterialSheet(const Material& m, std::uint32_t seed) : material(m), random(seed) {
     GridShape shape{.nu = m.nodes, .nv = m.nodes - 1};
     shape.u = 0.025 * (shape.nu - 1) * Vec3::UnitX(), shape.v = 0.025 * (shape.nv - 1) * Vec3::UnitZ();
+    if (m.askew) {
+      const double u = shape.u.norm(), w = shape.v.norm();
+      shape.u = u * Vec3(0.6, 0.5, 0.7).normalized();
+      shape.v = w * shape.u.cross(Vec3(0.3, -0.8, 0.4)).normalized();
+    }
     const std::vector<Vec3> rest = make_grid(shape).positions;
     std::vector<Vec3> x = rest, v(rest.size(), Vec3::Zero());
-    for (Vec3& place : x) place = 1.02 * place + m.motion * 0.008 * random.direction();
+    for (Vec3& place : x) place = m.stretch * place + m.motion * 0.008 * random.direction();
     const auto factor = [&](double range) { return m.graded ? std::pow(range, random.uniform()) : 1.0; };
     for (std::size_t i = 0; i < rest.size(); ++i) masses.push_back(m.node_mass * factor(10.0));
 

@@ -29,15 +29,14 @@ constexpr double as_believed = 2.0;
 constexpr int check_every = 8;
 constexpr double worst_quality = 0.3;
 
-// What products of a factor in single precision leave, relative to what the loop began with.
+// What products known from a factor leave, relative to what the loop began with.
 struct Rounding {
   double usual = 0.0, worst = 0.0;
 };
 
 Rounding rounding_of(const LinearSystem& system, bool in_single) {
-  constexpr double unit = 0x1p-24;
-  if (!in_single) return {};
-  if (system.stiffness < 0.0) return {CoreFast::unknown_rounding, 1.0};
+  const double unit = in_single ? 0x1p-24 : 0x1p-53;
+  if (system.stiffness < 0.0) return {CoreFast::unknown_rounding * (unit / 0x1p-24), unit / 0x1p-24};
   return {4.0 * unit * std::sqrt(1.0 + system.stiffness), 0.22 * unit * (1.0 + system.stiffness)};
 }
 

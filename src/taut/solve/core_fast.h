@@ -3,7 +3,7 @@
 //
 //   P = A_core, Ã = Uᵀ A U, P̃ = Uᵀ P U      conjugate gradients on Ã ỹ = b̃, preconditioned by P̃ = L Lᵀ
 //
-// - Neither Ã nor P̃ is formed: products take A, the factorisation takes A's core blocks, and constrained nodes are looked at one by one
+// - Neither Ã nor P̃ is formed: products take A or blocks of it, the factorisation takes A's core blocks, and constrained nodes are looked at one by one
 //   (solve/full_space.h).
 // - Ordering and symbolic work are done once per topology and core, whatever contacts do and whatever SolverOptions::reuse_analysis
 //   says; numbers are fresh in every solve.
@@ -16,7 +16,7 @@
 //   steps turn the stiff part of the velocity change round), and to look at it costs a product and a forward solve.
 //
 // Precision. The factor is in single precision, and P c is as exact as its solves: after a reduction of the error from e0 to e1 the true
-// error is about e1 + η e0. With the unit roundoff u = 2⁻²⁴ and σ of LinearSystem::stiffness, measured: η = 0.3 to 3.6 u sqrt(σ) on wrinkled
+// error is about e1 + η e0. With the unit roundoff u = 2⁻²⁴ (2⁻⁵³ once the factor is in double precision) and σ of LinearSystem::stiffness, measured: η = 0.3 to 3.6 u sqrt(σ) on wrinkled
 // cloth, up to 0.21 u σ on a flat sheet that hangs askew, where rounded stretch springs stiffen it across. Where 0.22 u (1 + σ) might
 // matter beside the error that the stop test allows, the residual is taken from A itself before the end, and on the way at
 // 8 u sqrt(1 + σ). If it is not what was believed, conjugate gradients begin anew, with products from A: then the factor only
