@@ -92,18 +92,18 @@ struct BlockCholesky::Implementation {
       Status status = factorize_in(precision != CholeskyPrecision::double_precision, source, loads);
       if (status.ok() || precision != CholeskyPrecision::automatic) return status;
       ++fallbacks;
-      return factorize_in(false, source, loads);
+      return factorize_in(false, {source.a, source.basis, source.pattern_is_analyzed}, loads);
     } catch (const std::bad_alloc&) {
       return {Outcome::out_of_memory, "Cholesky (block), factorisation: not enough memory"};
     }
   }
 
-  Status factorize_with_basis(const BlockCsr& a, const NodeBasis& basis, std::span<const Load> loads) {
+  Status factorize_with_basis(const BlockCsr& a, const NodeBasis& basis, std::span<const Load> loads, const RowsVisitor& visit) {
     assert(a.pattern == analyzed);
     assert(basis.dim.empty() || (a.pattern->uniform_dim == 3 && static_cast<Index>(basis.dim.size()) == a.rows()));
     if (pattern != a.pattern) number_unknowns(*a.pattern);
     pattern = a.pattern;
-    return factorize({a, basis, true}, loads);
+    return factorize({a, basis, true, visit ? &visit : nullptr}, loads);
   }
 
   void take_blocks(const BlockPattern& p, std::span<const std::uint8_t> mask, BlocksLeftOut left_out) {
@@ -188,15 +188,16 @@ Status BlockCholesky::factorize(const BlockCsr& a) {
   return me.factorize({a, {}, a.pattern == me.analyzed}, {});
 }
 
-Status BlockCholesky::factorize(const BlockCsr& a, const NodeBasis& basis, std::span<const double> b, double* b_norm2) {
+Status BlockCholesky::factorize(const BlockCsr& a, const NodeBasis& basis, std::span<const double> b, double* b_norm2,
+                                const RowsVisitor& visit) {
   const Implementation::Load load{b, b_norm2};
-  return implementation_->factorize_with_basis(a, basis, {&load, b.empty() ? 0u : 1u});
+  return implementation_->factorize_with_basis(a, basis, {&load, b.empty() ? 0u : 1u}, visit);
 }
 
 Status BlockCholesky::factorize(const BlockCsr& a, const NodeBasis& basis, std::span<const double> b, double& b_norm2,
-                                std::span<const double> r, double& r_norm2) {
+                                std::span<const double> r, double& r_norm2, const RowsVisitor& visit) {
   const Implementation::Load loads[] = {{b, &b_norm2}, {r, &r_norm2}};
-  return implementation_->factorize_with_basis(a, basis, loads);
+  return implementation_->factorize_with_basis(a, basis, loads, visit);
 }
 
 double BlockCholesky::solve_forward(std::span<const double> b) {

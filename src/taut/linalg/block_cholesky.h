@@ -70,11 +70,12 @@ class BlockCholesky : public SparseCholesky {
   std::span<const std::uint8_t> analyzed_blocks() const;
   Status factorize(const BlockCsr& a) override;
   // The analysed blocks of Qᵀ A Q; A must have the analysed pattern (asserted). `basis` is not kept. b, if not empty: solve_forward(b) at
-  // once, whose result goes to *b_norm2.
-  Status factorize(const BlockCsr& a, const NodeBasis& basis, std::span<const double> b = {}, double* b_norm2 = nullptr);
+  // once, whose result goes to *b_norm2. `visit` sees all rows of A, once.
+  Status factorize(const BlockCsr& a, const NodeBasis& basis, std::span<const double> b = {}, double* b_norm2 = nullptr,
+                   const RowsVisitor& visit = {});
   // Also solve_forward(r), whose y is the one that stays; on the way, both cost next to nothing.
   Status factorize(const BlockCsr& a, const NodeBasis& basis, std::span<const double> b, double& b_norm2, std::span<const double> r,
-                   double& r_norm2);
+                   double& r_norm2, const RowsVisitor& visit = {});
   double solve_forward(std::span<const double> b);
   void solve_backward(double beta, std::span<double> x);
   Status solve(std::span<const double> b, std::span<double> x) override;

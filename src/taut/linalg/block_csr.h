@@ -10,6 +10,7 @@
 //
 // so a product needs one gather of x and dim(i) straight dot products per row, whatever the dims are. Both triangles are stored.
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -63,6 +64,9 @@ struct BlockCsr {
   double at(Index row_dof, Index column_dof) const;
   Offset bytes() const { return static_cast<Offset>(values.size() * sizeof(double)) + pattern->bytes(); }
 };
+
+// Called for all rows of a matrix, begin ... end-1 at a time, in parallel, by a pass that reads them, while they are in the cache.
+using RowsVisitor = std::function<void(Index begin, Index end)>;
 
 // y = A x (x, y: dofs() doubles, not overlapping). Parallel over block rows, same bits for any thread count, no allocation.
 void multiply(const BlockCsr& a, std::span<const double> x, std::span<double> y);

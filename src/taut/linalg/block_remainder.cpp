@@ -10,7 +10,6 @@ namespace taut {
 namespace {
 
 constexpr Index rows_per_task = 512;
-constexpr Index prefetch_distance = 4096 / sizeof(double);  // ahead of which A's values are asked for
 constexpr Index overread = 3;  // entries behind a block's last row that a load of four takes in
 
 using Four = double __attribute__((vector_size(32), aligned(8), may_alias));
@@ -93,25 +92,26 @@ void BlockRemainder::analyze(std::shared_ptr<const BlockPattern> pattern, std::s
 }
 
 void BlockRemainder::update(const BlockCsr& a) {
+  parallel_for(a.rows(), rows_per_task, [&](Index begin, Index end) { update_rows(a, begin, end); });
+}
+
+void BlockRemainder::update_rows(const BlockCsr& a, Index begin, Index end) {
   assert(a.pattern == pattern_);
   const BlockPattern& p = *pattern_;
-  parallel_for(p.rows(), rows_per_task, [&](Index begin, Index end) {
-    for (Index i = begin; i < end; ++i) {
-      const Index rows = p.dim(i), width = p.width(i);
-      for (Index k = 0; k < rows * width; k += 8) __builtin_prefetch(a.values.data() + p.value_start[i] + prefetch_distance + k, 0, 2);
-      for (Index k = row_start_[i]; k < row_start_[i + 1]; ++k) {
-        const double* from = a.values.data() + source_[k];
-        double* to = values_.data() + value_start_[k];
-        if (p.uniform_dim == 3) {
-          for (Index r = 0; r < 3; ++r)
-            for (Index c = 0; c < 3; ++c) to[3 * r + c] = from[r * width + c];
-        } else {
-          for (Index r = 0; r < rows; ++r)
-            for (Index c = 0; c < column_dim_[k]; ++c) *to++ = from[r * width + c];
-        }
+  for (Index i = begin; i < end; ++i) {
+    const Index rows = p.dim(i), width = p.width(i);
+    for (Index k = row_start_[i]; k < row_start_[i + 1]; ++k) {
+      const double* from = a.values.data() + source_[k];
+      double* to = values_.data() + value_start_[k];
+      if (p.uniform_dim == 3) {
+        for (Index r = 0; r < 3; ++r)
+          for (Index c = 0; c < 3; ++c) to[3 * r + c] = from[r * width + c];
+      } else {
+        for (Index r = 0; r < rows; ++r)
+          for (Index c = 0; c < column_dim_[k]; ++c) *to++ = from[r * width + c];
       }
     }
-  });
+  }
 }
 
 double BlockRemainder::advance(double beta, std::span<const double> r, std::span<const double> c, std::span<double> p,

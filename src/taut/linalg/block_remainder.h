@@ -27,6 +27,8 @@ class BlockRemainder {
   void analyze(std::shared_ptr<const BlockPattern> pattern, std::span<const std::uint8_t> mask);
   // Takes the values of E from a matrix of that pattern (asserted).
   void update(const BlockCsr& a);
+  // The same for its rows begin ... end-1; rows may be taken in any order and in parallel.
+  void update_rows(const BlockCsr& a, Index begin, Index end);
   // p = r + beta p, q = p + E c; returns cᵀ q. Same bits for any number of threads.
   double advance(double beta, std::span<const double> r, std::span<const double> c, std::span<double> p, std::span<double> q) const;
   Offset nonzeros() const { return value_start_.back(); }

@@ -81,12 +81,14 @@ bool CoreFast::analyze_if_new(const LinearSystem& system, SolveSummary& summary)
 bool CoreFast::factorize(CholeskyPrecision precision, const LinearSystem& system, SolveSummary& summary) {
   factor_.set_precision(precision);
   summary.precision = precision == CholeskyPrecision::single_precision ? "single" : "double";
+  const BlockCsr& a = *system.matrix;
   const NodeBasis basis = free_basis(system);
+  const RowsVisitor update_remainder = [&](Index begin, Index end) { remainder_.update_rows(a, begin, end); };
   if (starts_at_rest_) {
-    summary.status = factor_.factorize(*system.matrix, basis, load_, &delta0_);
+    summary.status = factor_.factorize(a, basis, load_, &delta0_, update_remainder);
     delta_ = delta0_;
   } else {
-    summary.status = factor_.factorize(*system.matrix, basis, load_, delta0_, r_, delta_);
+    summary.status = factor_.factorize(a, basis, load_, delta0_, r_, delta_, update_remainder);
   }
   if (summary.status.ok() && !std::isfinite(delta0_))
     summary.status = {Outcome::not_finite, "the right-hand side overflows the factor's precision"};
@@ -204,8 +206,6 @@ void CoreFast::run(const LinearSystem& system, std::span<double> x, SolveSummary
 
   start(system, x);
   summary.solve_ms = timer.lap();
-  // First: it reads A from end to end, for the factorisation, which does so in another order.
-  remainder_.update(a);
   const bool in_single = factorize(CholeskyPrecision::single_precision, system, summary);
   if (!in_single && !begin_in_double(system, summary)) return;
   summary.factor_ms = timer.lap();

@@ -14,8 +14,6 @@ AnalyzedGraph analyzed_graph(const BlockPattern& pattern, std::span<const std::u
       result.node.push_back(i);
       result.weight.push_back(pattern.dim(i));
       result.diagonal.push_back(pattern.block_offset[pattern.diagonal[i]]);
-      result.row_value.push_back(pattern.value_start[i]);
-      result.width.push_back(pattern.width(i));
     }
   result.graph.start.push_back(0);
   for (const Index i : result.node) {

@@ -13,13 +13,11 @@ namespace taut {
 
 struct AnalyzedGraph {
   NodeGraph graph;               // of the nodes with unknowns, numbered in A's order; neighbours ascending
-  std::vector<Index> value;       // per neighbour: the first column of its block in the node's row of A ...
-  std::vector<Index> diagonal;    // ... and per node of its diagonal block
-  std::vector<Index> width;       // per node: of its row of A
-  std::vector<Offset> row_value;  // per node: where that begins in A's values
-  std::vector<Index> node;       // the number of each in A
-  std::vector<Index> weight;     // its unknowns, at least 1
-  Index rows = 0;                // nodes of A
+  std::vector<Index> value;     // per neighbour: the first column of its block in the node's row of A ...
+  std::vector<Index> diagonal;  // ... and per node of its diagonal block
+  std::vector<Index> node;      // the number of each in A
+  std::vector<Index> weight;    // its unknowns, at least 1
+  Index rows = 0;               // nodes of A
 
   // Empty if a matrix of this pattern can be factorised with this analysis: the same nodes with at most as many unknowns, blocks only where
   // there were blocks. Else what is wrong.

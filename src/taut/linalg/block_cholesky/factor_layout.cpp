@@ -20,11 +20,11 @@ class LayoutBuilder {
     for (const Index i : tree_.order) {
       layout_.node.push_back(analyzed_.node[i]);
       layout_.node_weight.push_back(analyzed_.weight[i]);
-      layout_.node_width.push_back(analyzed_.width[i]);
-      layout_.node_value.push_back(analyzed_.row_value[i]);
     }
     link_children();
     place_ = inverse_permutation(tree_.order);
+    layout_.place.assign(static_cast<std::size_t>(analyzed_.rows), -1);
+    for (std::size_t k = 0; k < layout_.node.size(); ++k) layout_.place[layout_.node[k]] = static_cast<Index>(k);
     row_of_.assign(tree_.order.size(), -1);
     for (Index s = 0; s < tree_.supernodes(); ++s) {
       shape_front(s);
@@ -83,17 +83,19 @@ class LayoutBuilder {
     for (Index k = layout_.front[s].first_node; k < layout_.front[s].last_node; ++k) {
       const NodeGraph& graph = analyzed_.graph;
       const Index i = tree_.order[k];
-      add_block(layout_.front[s].shape, k, analyzed_.diagonal[i]);
+      layout_.gathered_start.push_back(layout_.gathered_size);
+      add_block(layout_.front[s].shape, k, k, analyzed_.diagonal[i]);
       for (Index e = graph.start[i]; e < graph.start[i + 1]; ++e)
-        if (const Index other = place_[graph.neighbour[e]]; other > k) add_block(layout_.front[s].shape, other, analyzed_.value[e]);
+        if (const Index other = place_[graph.neighbour[e]]; other > k) add_block(layout_.front[s].shape, k, other, analyzed_.value[e]);
       layout_.block_start.push_back(static_cast<Index>(layout_.block.size()));
     }
   }
 
-  void add_block(const FrontShape& shape, Index place, Index value) {
+  void add_block(const FrontShape& shape, Index node, Index place, Index value) {
     const Index row = row_of_[place], slab = row / sizes_.slab_rows, in_slab = row % sizes_.slab_rows;
-    layout_.block.push_back(
-        {shape.panel_offset(slab) + in_slab, shape.panel_offset(slab + 1), place, value, sizes_.slab_rows - in_slab});
+    layout_.block.push_back({shape.panel_offset(slab) + in_slab, shape.panel_offset(slab + 1), place, sizes_.slab_rows - in_slab});
+    layout_.block_value.push_back(value);
+    layout_.gathered_size += Offset{weight_at(node)} * weight_at(place);
   }
 
   // How the rows of child c lie in its parent, whose rows row_of_ holds.
@@ -153,8 +155,8 @@ FactorLayout make_factor_layout(const SupernodeTree& tree, const AnalyzedGraph& 
 
 Offset FactorLayout::bytes() const {
   const auto size_of = [](const auto& v) { return static_cast<Offset>(v.size() * sizeof(v[0])); };
-  return size_of(front) + size_of(child) + size_of(run) + size_of(spread) + size_of(node) + size_of(node_weight) + size_of(node_width) +
-         size_of(node_value) + size_of(node_column) + size_of(block_start) + size_of(block) + size_of(task);
+  return size_of(front) + size_of(child) + size_of(run) + size_of(spread) + size_of(node) + size_of(node_weight) + size_of(node_column) +
+         size_of(place) + size_of(block_start) + size_of(block) + size_of(block_value) + size_of(gathered_start) + size_of(task);
 }
 
 }  // namespace taut

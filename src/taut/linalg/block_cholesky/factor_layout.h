@@ -42,7 +42,6 @@ struct BlockPlace {
   Offset offset = 0;       // of the other node's first row in the panel's first column
   Offset next_slab = 0;    // of the first row of the slab after it there
   Index place = 0;         // of the other node in the order
-  Index value = 0;         // first column of the block in the analysed matrix's row of the pivot node
   Index rows_in_slab = 0;  // how many of the other node's rows are in the slab where it begins, or more
 };
 
@@ -59,14 +58,15 @@ struct FactorLayout {
   std::vector<RowSpread> spread;
   std::vector<Index> node;         // per place in the order: the node of A
   std::vector<Index> node_weight;  // per place in the order: its unknowns
-  std::vector<Index> node_width;   // per place in the order: length of the node's row in the analysed matrix ...
-  std::vector<Offset> node_value;  // ... and where it begins in the matrix's values
   std::vector<Index> node_column;  // per place in the order: first column of the node in its front
-  std::vector<Index> block_start;  // per place in the order, into block; nodes + 1
-  std::vector<BlockPlace> block;
+  std::vector<Index> place;        // per row of A: of its node in the order, or -1
+  std::vector<Index> block_start;  // per place in the order, into block and block_value; nodes + 1
+  std::vector<BlockPlace> block;   // the node's diagonal block first
+  std::vector<Index> block_value;     // per block: its first column in the node's row of the analysed matrix
+  std::vector<Offset> gathered_start;  // per place in the order: where its blocks begin among those gathered from A
   std::vector<FrontTask> task;
   TaskTree task_tree;
-  Offset arena_size = 0, packed_size = 0, vector_size = 0;  // elements
+  Offset arena_size = 0, packed_size = 0, vector_size = 0, gathered_size = 0;  // elements
   double flops = 0.0;                                       // of the padded fronts
 
   Offset bytes() const;

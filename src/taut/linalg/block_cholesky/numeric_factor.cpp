@@ -15,6 +15,7 @@ template <class T>
 NumericFactor<T>::NumericFactor(const SupernodeTree& tree, const AnalyzedGraph& graph, const FrontKernels<T>& kernels)
     : kernels_(kernels),
       layout_(make_factor_layout(tree, graph, {kernels_.lanes, kernels_.slab_rows, kernels_.column_group, kernels_.packed_size})) {
+  gathered_ = AlignedArray<T>(layout_.gathered_size + read_too_many);
   packed_ = AlignedArray<T>(layout_.packed_size);
   vectors_[0] = AlignedArray<T>(layout_.vector_size);
   fate_.resize(layout_.front.size());
@@ -54,10 +55,11 @@ Status NumericFactor<T>::factorize(const FactorSource& source, std::span<const I
   if (planned_threads_ != thread_count()) plan();
   if (loads.size() > 1 && vectors_[1].bytes() == 0) vectors_[1] = AlignedArray<T>(layout_.vector_size);
   take_dims(source);
+  gather(source);
   const auto run = [&](Index t) {
     const FrontTask& task = layout_.task[t];
     for (Index s = task.begin; s < task.end; ++s) {
-      eliminate(source, s, task.shared);
+      eliminate(s, task.shared);
       if (fate_[s] != Fate::eliminated) continue;
       for (std::size_t k = 0; k < loads.size(); ++k)
         forward(s, {start, loads[k].scale}, loads[k].b, static_cast<int>(loads.size() - 1 - k));
@@ -68,7 +70,7 @@ Status NumericFactor<T>::factorize(const FactorSource& source, std::span<const I
 }
 
 template <class T>
-void NumericFactor<T>::eliminate(const FactorSource& source, Index s, bool shared) {
+void NumericFactor<T>::eliminate(Index s, bool shared) {
   const Front& front = layout_.front[s];
   for (Index i = front.child_begin; i < front.child_end; ++i)
     if (fate_[layout_.child[i]] != Fate::eliminated) {
@@ -77,7 +79,7 @@ void NumericFactor<T>::eliminate(const FactorSource& source, Index s, bool share
     }
   T* panel = arena_.data() + front.panel;
   std::fill(panel, panel + front.shape.panel_size(), T(0));
-  assemble(source, front, panel);
+  assemble(front, panel);
   add_children(front, panel, true);
   bad_pivot_[s] = factor_panel(front, panel, shared);
   fate_[s] = bad_pivot_[s].column < 0 ? Fate::eliminated : Fate::bad_pivot;
@@ -111,25 +113,12 @@ void NumericFactor<T>::pack(const Front& front, const T* panel, bool shared) {
   }
 }
 
-namespace {
-
-// How many nodes ahead rows of A are asked for: they are taken in the order of elimination, from all over A.
-constexpr Index rows_ahead = 3;
-
-void prefetch_row(const double* row, Index width) {
-  for (Index k = 0; k < 3 * width; k += 8) __builtin_prefetch(row + k);
-}
-
-}  // namespace
-
 template <class T>
-void NumericFactor<T>::assemble(const FactorSource& source, const Front& front, T* panel) const {
+void NumericFactor<T>::assemble(const Front& front, T* panel) const {
   const Index r = front.shape.slab_rows;
   const auto set_one = [&](Index j) { panel[front.shape.panel_offset(j / r) + Offset{j} * r + j % r] = T(1); };
   for (Index k = front.first_node; k < front.last_node; ++k) {
-    if (const Index later = k + rows_ahead; later < static_cast<Index>(layout_.node.size()) && source.pattern_is_analyzed)
-      prefetch_row(source.a.values.data() + layout_.node_value[later], layout_.node_width[later]);
-    assemble_node(source, front, k, panel);
+    assemble_node(front, k, panel);
     for (Index j = dim_[k]; j < layout_.node_weight[k]; ++j) set_one(layout_.node_column[k] + j);
   }
   for (Index j = 0; j < front.shape.padding; ++j) set_one(j);
@@ -145,15 +134,9 @@ void project(const Mat3* left, Index rows, const Mat3* right, Index columns, dou
   if (right) b.leftCols(columns) = (b * right->leftCols(columns)).eval();
 }
 
-// The first column of the block of two nodes in A's row of the first, or -1; for a matrix that has not the analysed pattern itself.
-Index find_block(const BlockPattern& p, Index node, Index other) {
-  const Index k = p.find(node, other);
-  return k < 0 ? -1 : p.block_offset[k];
-}
-
-// A block, turned; of one on the diagonal the lower triangle.
-template <class T>
-TAUT_ALWAYS_INLINE void put_block(const BlockPlace& place, const double* block, Index width, Index rows, Index columns, bool is_diagonal,
+// A gathered block, `width` numbers a column; of one on the diagonal the lower triangle.
+template <class T, class From>
+TAUT_ALWAYS_INLINE void put_block(const BlockPlace& place, const From* block, Index width, Index rows, Index columns, bool is_diagonal,
                                   T* column, Index r) {
   for (Index i = 0; i < rows; ++i) {
     T* to = column + (i < place.rows_in_slab ? place.offset + i : place.next_slab + i - place.rows_in_slab);
@@ -161,56 +144,46 @@ TAUT_ALWAYS_INLINE void put_block(const BlockPlace& place, const double* block, 
   }
 }
 
-// Three numbers, rounded to T. Reads a fourth and adds nothing to the fourth place.
+// Three numbers. Reads a fourth and adds nothing to the fourth place.
 template <class T>
-TAUT_ALWAYS_INLINE void add_three(const double* from, T* to) {
-  typedef double Doubles __attribute__((vector_size(32), aligned(8), may_alias));
-  typedef std::int64_t Mask __attribute__((vector_size(32)));
+TAUT_ALWAYS_INLINE void add_three(const T* from, T* to) {
   typedef T Four __attribute__((vector_size(4 * sizeof(T)), aligned(sizeof(T)), may_alias));
+  typedef std::conditional_t<sizeof(T) == 4, std::int32_t, std::int64_t> Mask __attribute__((vector_size(4 * sizeof(T))));
   const Mask first_three = {-1, -1, -1, 0};
-  const auto three = (Doubles)((Mask) * reinterpret_cast<const Doubles*>(from) & first_three);
-  *reinterpret_cast<Four*>(to) += __builtin_convertvector(three, Four);
+  *reinterpret_cast<Four*>(to) += (Four)((Mask) * reinterpret_cast<const Four*>(from) & first_three);
 }
 
 }  // namespace
 
-// Row `node` of A read across is the pivots' column read down.
 template <class T>
-void NumericFactor<T>::assemble_node(const FactorSource& source, const Front& front, Index k, T* panel) const {
-  const BlockPattern& p = *source.a.pattern;
-  const Index node = layout_.node[k], r = front.shape.slab_rows;
+void NumericFactor<T>::assemble_node(const Front& front, Index k, T* panel) const {
+  const Index r = front.shape.slab_rows, weight = layout_.node_weight[k];
   if (dim_[k] == 0) return;
-  const Index width = source.pattern_is_analyzed ? layout_.node_width[k] : p.width(node);
-  const double* row = source.a.values.data() + (source.pattern_is_analyzed ? layout_.node_value[k] : p.value_start[node]);
+  const T* block = gathered_.data() + layout_.gathered_start[k];
   T* column = panel + Offset{layout_.node_column[k]} * r;
   for (Index e = layout_.block_start[k]; e < layout_.block_start[k + 1]; ++e) {
     const BlockPlace& place = layout_.block[e];
-    const Index value = source.pattern_is_analyzed ? place.value : find_block(p, node, layout_.node[place.place]);
-    if (value < 0) continue;
-    const double* block = row + value;
     if (!is_plain_[k] || !is_plain_[place.place]) {
-      assemble_projected(place, k, block, width, column, r);
-    } else if (place.place != k && place.rows_in_slab > 3 && value + 3 < width) {
+      assemble_projected(place, k, block, column, r);
+    } else if (place.place != k && place.rows_in_slab > 3) {
       // Four are read and written in each column of the block: there are as many.
-      for (Index j = 0; j < 3; ++j) add_three(block + j * width, column + place.offset + j * r);
+      for (Index j = 0; j < 3; ++j) add_three(block + 3 * j, column + place.offset + j * r);
     } else {
-      put_block(place, block, width, 3, 3, place.place == k, column, r);
+      put_block(place, block, 3, 3, 3, place.place == k, column, r);
     }
+    block += weight * layout_.node_weight[place.place];
   }
 }
 
 // Blocks of any size, projected where a node has a basis of its own.
 template <class T>
-void NumericFactor<T>::assemble_projected(const BlockPlace& place, Index k, const double* block, Index width, T* column, Index r) const {
+void NumericFactor<T>::assemble_projected(const BlockPlace& place, Index k, const T* block, T* column, Index r) const {
   const Index dim = dim_[k], other_dim = dim_[place.place], basis = basis_of_[k], other_basis = basis_of_[place.place];
+  if (basis < 0 && other_basis < 0) return put_block(place, block, layout_.node_weight[place.place], other_dim, dim, place.place == k, column, r);
   double projected[9];
-  if (basis >= 0 || other_basis >= 0) {
-    for (Index j = 0; j < 3; ++j)
-      for (Index i = 0; i < 3; ++i) projected[3 * j + i] = block[j * width + i];
-    project(basis >= 0 ? &basis_[basis] : nullptr, dim, other_basis >= 0 ? &basis_[other_basis] : nullptr, other_dim, projected);
-    block = projected, width = 3;
-  }
-  put_block(place, block, width, other_dim, dim, place.place == k, column, r);
+  for (Index j = 0; j < 9; ++j) projected[j] = static_cast<double>(block[j]);
+  project(basis >= 0 ? &basis_[basis] : nullptr, dim, other_basis >= 0 ? &basis_[other_basis] : nullptr, other_dim, projected);
+  put_block(place, projected, 3, other_dim, dim, place.place == k, column, r);
 }
 
 template <class T>

@@ -2,7 +2,10 @@
 // The numbers of a block Cholesky factorisation in one precision: P A Pᵀ = L Lᵀ by the multifrontal method (Duff & Reid 1983; Liu 1992),
 // and the solves.
 //
-// For each front, children first (front_kernels.h has the arithmetic, factor_layout.h the memory):
+// First A's blocks are gathered in the order of elimination and in the factor's precision (gather.cpp): A is read once, from end to end,
+// where fronts would take rows from all over it.
+//
+// Then for each front, children first (front_kernels.h has the arithmetic, factor_layout.h the memory):
 //
 //   1  panel = 0; add the blocks of A in the pivots' columns; unknowns that are missing in A (and padding) get the identity
 //   2  add the columns of the children's updates that are pivots here
@@ -31,6 +34,7 @@ struct FactorSource {
   const BlockCsr& a;
   NodeBasis basis;
   bool pattern_is_analyzed;  // A has the analysed pattern itself; else one that fits it, and blocks are searched
+  const RowsVisitor* visit = nullptr;
 };
 
 // Right-hand sides and solutions: the node at place k of the order has its unknowns from start[k] on. With a basis these are all three; Q
@@ -67,18 +71,21 @@ class NumericFactor {
   const FactorLayout& layout() const { return layout_; }
   const char* instruction_set() const { return kernels_.instruction_set; }
   Offset panel_bytes() const { return packed_.bytes(); }
-  Offset bytes() const { return packed_.bytes() + arena_.bytes() + vectors_[0].bytes() + vectors_[1].bytes() + layout_.bytes(); }
+  Offset bytes() const { return gathered_.bytes() + packed_.bytes() + arena_.bytes() + vectors_[0].bytes() + vectors_[1].bytes() + layout_.bytes(); }
 
  private:
+  static constexpr Offset read_too_many = 3;  // entries, behind a block's last column
   enum class Fate : std::uint8_t { eliminated, bad_pivot, skipped };
 
   static double norm2_of(const std::vector<double>& parts);
   void plan();
   void take_dims(const FactorSource& source);
-  void eliminate(const FactorSource& source, Index s, bool shared);
-  void assemble(const FactorSource& source, const Front& front, T* panel) const;
-  void assemble_node(const FactorSource& source, const Front& front, Index k, T* panel) const;
-  void assemble_projected(const BlockPlace& place, Index k, const double* block, Index width, T* column, Index slab_rows) const;
+  void gather(const FactorSource& source);
+  void gather_row(const FactorSource& source, Index k);
+  void eliminate(Index s, bool shared);
+  void assemble(const Front& front, T* panel) const;
+  void assemble_node(const Front& front, Index k, T* panel) const;
+  void assemble_projected(const BlockPlace& place, Index k, const T* block, T* column, Index slab_rows) const;
   void add_children(const Front& front, T* target, bool target_is_panel);
   BadPivot factor_panel(const Front& front, T* panel, bool shared) const;
   void form_update(const Front& front, const T* panel, bool shared);
@@ -91,7 +98,7 @@ class NumericFactor {
   const FrontKernels<T>& kernels_;
   FactorLayout layout_;
   int planned_threads_ = 0;
-  AlignedArray<T> packed_, arena_;
+  AlignedArray<T> gathered_, packed_, arena_;
   std::array<AlignedArray<T>, 2> vectors_;
   std::vector<Fate> fate_;                    // per front
   std::vector<BadPivot> bad_pivot_;           // per front
