@@ -47,7 +47,7 @@ TEST(BlockRemainder, GivesTheProductOfADirection) {
         const double beta = 0.37;
         const Eigen::VectorXd c = as_eigen(z) + beta * as_eigen(last), r = s.p * as_eigen(z), before = s.p * as_eigen(last);
         std::vector<double> direction(c.begin(), c.end()), residual(r.begin(), r.end()), p(before.begin(), before.end()), q(p.size());
-        const double energy = remainder.advance(beta, residual, direction, p, q);
+        const double energy = remainder.advance(false, beta, residual, direction, p, q);
         EXPECT_LT((as_eigen(p) - s.p * c).norm(), 1e-12 * (s.p * c).norm());
         EXPECT_LT((as_eigen(q) - (s.p + s.e) * c).norm(), 1e-12 * c.norm() * s.p.norm());
         EXPECT_NEAR(energy, c.dot(dense(s.a) * c), 1e-12 * std::abs(energy));
@@ -70,7 +70,7 @@ TEST(BlockRemainder, DeterministicForAnyNumberOfThreads) {
     set_thread_count(threads);
     remainder.update(s.a);
     std::vector<double> p = start, q(p.size());
-    const double now = remainder.advance(0.5, r, c, p, q);
+    const double now = remainder.advance(false, 0.5, r, c, p, q);
     if (threads == 1) expected = q, energy = now;
     EXPECT_TRUE(q == expected && now == energy) << threads << " threads";
   }

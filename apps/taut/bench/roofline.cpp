@@ -112,7 +112,7 @@ class Phases {
     add("outside the core: copied", 0.0, 8.0 * static_cast<double>(system.matrix->values.size()) + 8.0 * values, "double",
         median_ms([&] { remainder.update(*system.matrix); }));
     add("outside the core: product", 2.0 * values + 5.0 * static_cast<double>(n), 8.0 * values + 6.0 * 8.0 * static_cast<double>(n), "double",
-        median_ms([&] { remainder.advance(0.5, r, c, p, q); }));
+        median_ms([&] { remainder.advance(false, 0.5, r, c, p, q); }));
   }
 
   void measure_solver(const LinearSystem& system, const char* name, int runs_wanted) {

@@ -23,6 +23,7 @@ struct BlockCholesky::Implementation {
 
   std::shared_ptr<const BlockPattern> analyzed;  // null if the analysis was given no owner
   std::vector<std::uint8_t> analyzed_blocks;     // of that pattern
+  UnanalyzedBlocks unanalyzed;                   // the others
   // Of the matrix last factorised:
   std::shared_ptr<const BlockPattern> pattern;
   double scale = 1.0;                 // of the last forward solve
@@ -92,18 +93,21 @@ struct BlockCholesky::Implementation {
       Status status = factorize_in(precision != CholeskyPrecision::double_precision, source, loads);
       if (status.ok() || precision != CholeskyPrecision::automatic) return status;
       ++fallbacks;
-      return factorize_in(false, {source.a, source.basis, source.pattern_is_analyzed}, loads);
+      FactorSource again = source;
+      again.visit = nullptr;
+      return factorize_in(false, again, loads);
     } catch (const std::bad_alloc&) {
       return {Outcome::out_of_memory, "Cholesky (block), factorisation: not enough memory"};
     }
   }
 
-  Status factorize_with_basis(const BlockCsr& a, const NodeBasis& basis, std::span<const Load> loads, const RowsVisitor& visit) {
+  Status factorize_with_basis(const BlockCsr& a, const NodeBasis& basis, std::span<const Load> loads, const BlocksOutside& outside) {
     assert(a.pattern == analyzed);
     assert(basis.dim.empty() || (a.pattern->uniform_dim == 3 && static_cast<Index>(basis.dim.size()) == a.rows()));
     if (pattern != a.pattern) number_unknowns(*a.pattern);
     pattern = a.pattern;
-    return factorize({a, basis, true, visit ? &visit : nullptr}, loads);
+    assert(!outside.lumped || a.pattern->uniform_dim == 3);
+    return factorize({a, basis, true, outside.lumped ? &unanalyzed : nullptr, outside.visit ? &outside.visit : nullptr}, loads);
   }
 
   void take_blocks(const BlockPattern& p, std::span<const std::uint8_t> mask, BlocksLeftOut left_out) {
@@ -126,6 +130,7 @@ struct BlockCholesky::Implementation {
       graph = analyzed_graph(p, mask);
       tree = make_supernode_tree(graph.graph, elimination_order(graph.graph, graph.weight), graph.weight);
       take_blocks(p, mask, left_out);
+      unanalyzed = unanalyzed_blocks(p, analyzed_blocks);
       make_factor(precision != CholeskyPrecision::double_precision);
     } catch (const std::bad_alloc&) {
       return {Outcome::out_of_memory, "Cholesky (block), analysis: not enough memory"};
@@ -189,15 +194,15 @@ Status BlockCholesky::factorize(const BlockCsr& a) {
 }
 
 Status BlockCholesky::factorize(const BlockCsr& a, const NodeBasis& basis, std::span<const double> b, double* b_norm2,
-                                const RowsVisitor& visit) {
+                                const BlocksOutside& outside) {
   const Implementation::Load load{b, b_norm2};
-  return implementation_->factorize_with_basis(a, basis, {&load, b.empty() ? 0u : 1u}, visit);
+  return implementation_->factorize_with_basis(a, basis, {&load, b.empty() ? 0u : 1u}, outside);
 }
 
 Status BlockCholesky::factorize(const BlockCsr& a, const NodeBasis& basis, std::span<const double> b, double& b_norm2,
-                                std::span<const double> r, double& r_norm2, const RowsVisitor& visit) {
+                                std::span<const double> r, double& r_norm2, const BlocksOutside& outside) {
   const Implementation::Load loads[] = {{b, &b_norm2}, {r, &r_norm2}};
-  return implementation_->factorize_with_basis(a, basis, loads, visit);
+  return implementation_->factorize_with_basis(a, basis, loads, outside);
 }
 
 double BlockCholesky::solve_forward(std::span<const double> b) {

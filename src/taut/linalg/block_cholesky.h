@@ -39,6 +39,14 @@ namespace taut {
 // Of the pattern's blocks that the mask leaves out: all of them, or only those without a place in the factor.
 enum class BlocksLeftOut { all_outside_mask, without_place };
 
+// What becomes of blocks of A that are not factorised.
+struct BlocksOutside {
+  // Each is added to the diagonal block of its row, so that block rows sum to what A's do: that takes the springs out that made them, where
+  // else their part of the diagonal would stay. For symmetric 3x3 blocks.
+  bool lumped = false;
+  RowsVisitor visit = {};  // sees all rows of A, once
+};
+
 enum class CholeskyPrecision { double_precision, single_precision, automatic };
 
 struct BlockCholeskyStatistics {
@@ -70,12 +78,12 @@ class BlockCholesky : public SparseCholesky {
   std::span<const std::uint8_t> analyzed_blocks() const;
   Status factorize(const BlockCsr& a) override;
   // The analysed blocks of Qᵀ A Q; A must have the analysed pattern (asserted). `basis` is not kept. b, if not empty: solve_forward(b) at
-  // once, whose result goes to *b_norm2. `visit` sees all rows of A, once.
+  // once, whose result goes to *b_norm2.
   Status factorize(const BlockCsr& a, const NodeBasis& basis, std::span<const double> b = {}, double* b_norm2 = nullptr,
-                   const RowsVisitor& visit = {});
+                   const BlocksOutside& outside = {});
   // Also solve_forward(r), whose y is the one that stays; on the way, both cost next to nothing.
   Status factorize(const BlockCsr& a, const NodeBasis& basis, std::span<const double> b, double& b_norm2, std::span<const double> r,
-                   double& r_norm2, const RowsVisitor& visit = {});
+                   double& r_norm2, const BlocksOutside& outside = {});
   double solve_forward(std::span<const double> b);
   void solve_backward(double beta, std::span<double> x);
   Status solve(std::span<const double> b, std::span<double> x) override;

@@ -23,11 +23,15 @@ struct View {
 };
 
 // E's row i of three unknowns times c, blocks of 3x3: lane by lane, summed at the end.
+template <bool lumped>
 TAUT_ALWAYS_INLINE void row_product_3(const View& e, Index i, const double* c, double* product) {
   Four sum[3] = {};
+  const double* own = c + 3 * i;
+  const Four mine = {own[0], own[1], own[2], 0.0};
   for (Index k = e.row_start[i]; k < e.row_start[i + 1]; ++k) {
     const double *block = e.values + Offset{9} * k, *from = c + e.column_dof[k];
-    const Four x = {from[0], from[1], from[2], 0.0};
+    Four x = {from[0], from[1], from[2], 0.0};
+    if constexpr (lumped) x -= mine;
     for (Index r = 0; r < 3; ++r) sum[r] += four(block + 3 * r) * x;
   }
   for (Index r = 0; r < 3; ++r) product[r] = (sum[r][0] + sum[r][2]) + sum[r][1];
@@ -40,17 +44,19 @@ TAUT_ALWAYS_INLINE void row_product(const View& e, Index i, Index rows, const do
       for (Index j = 0; j < e.column_dim[k]; ++j) product[r] += e.values[e.value_start[k] + e.column_dim[k] * r + j] * c[e.column_dof[k] + j];
 }
 
-template <Index dim>
+enum class Rows { of_three, of_three_lumped, of_any };
+
+template <Rows kind>
 TAUT_ALWAYS_INLINE double advance_rows(const View& e, Index begin, Index end, double beta, const double* r, const double* c, double* p,
                                        double* q) {
   double energy = 0.0;
   for (Index i = begin; i < end; ++i) {
-    const Index dof = dim == 3 ? 3 * i : e.dof_start[i], rows = dim == 3 ? 3 : e.dof_start[i + 1] - dof;
+    const Index dof = kind == Rows::of_any ? e.dof_start[i] : 3 * i, rows = kind == Rows::of_any ? e.dof_start[i + 1] - dof : 3;
     double product[3];
-    if constexpr (dim == 3) {
-      row_product_3(e, i, c, product);
-    } else {
+    if constexpr (kind == Rows::of_any) {
       row_product(e, i, rows, c, product);
+    } else {
+      row_product_3<kind == Rows::of_three_lumped>(e, i, c, product);
     }
     for (Index j = 0; j < rows; ++j) {
       p[dof + j] = r[dof + j] + beta * p[dof + j];
@@ -62,11 +68,16 @@ TAUT_ALWAYS_INLINE double advance_rows(const View& e, Index begin, Index end, do
 }
 
 TAUT_MULTIVERSION double advance_3(const View& e, Index begin, Index end, double beta, const double* r, const double* c, double* p, double* q) {
-  return advance_rows<3>(e, begin, end, beta, r, c, p, q);
+  return advance_rows<Rows::of_three>(e, begin, end, beta, r, c, p, q);
+}
+
+TAUT_MULTIVERSION double advance_3_lumped(const View& e, Index begin, Index end, double beta, const double* r, const double* c, double* p,
+                                          double* q) {
+  return advance_rows<Rows::of_three_lumped>(e, begin, end, beta, r, c, p, q);
 }
 
 double advance_any(const View& e, Index begin, Index end, double beta, const double* r, const double* c, double* p, double* q) {
-  return advance_rows<0>(e, begin, end, beta, r, c, p, q);
+  return advance_rows<Rows::of_any>(e, begin, end, beta, r, c, p, q);
 }
 
 }  // namespace
@@ -114,10 +125,11 @@ void BlockRemainder::update_rows(const BlockCsr& a, Index begin, Index end) {
   }
 }
 
-double BlockRemainder::advance(double beta, std::span<const double> r, std::span<const double> c, std::span<double> p,
+double BlockRemainder::advance(bool lumped, double beta, std::span<const double> r, std::span<const double> c, std::span<double> p,
                                std::span<double> q) const {
   const View view{row_start_.data(), column_dof_.data(), column_dim_.data(), pattern_->dof_start.data(), value_start_.data(), values_.data()};
-  const auto rows = pattern_->uniform_dim == 3 ? advance_3 : advance_any;
+  assert(!lumped || pattern_->uniform_dim == 3);
+  const auto rows = lumped ? advance_3_lumped : pattern_->uniform_dim == 3 ? advance_3 : advance_any;
   return ordered_sum(
       pattern_->rows(), [&](Index begin, Index end) { return rows(view, begin, end, beta, r.data(), c.data(), p.data(), q.data()); },
       rows_per_task, 1);

@@ -10,6 +10,9 @@
 //
 // p is as exact as P⁻¹ was applied: in single precision that leaves a rounding error which only a residual from A itself removes.
 //
+// Where P has the others lumped into its diagonal (BlocksOutside in linalg/block_cholesky.h), E has on its diagonal what makes its rows sum
+// to zero: E c = Σ_j E_ij (c_j - c_i).
+//
 // Vectors have A's unknowns. With constraints (linalg/node_basis.h), p and q hold something in constrained directions that nobody reads.
 
 #include <cstdint>
@@ -30,7 +33,8 @@ class BlockRemainder {
   // The same for its rows begin ... end-1; rows may be taken in any order and in parallel.
   void update_rows(const BlockCsr& a, Index begin, Index end);
   // p = r + beta p, q = p + E c; returns cᵀ q. Same bits for any number of threads.
-  double advance(double beta, std::span<const double> r, std::span<const double> c, std::span<double> p, std::span<double> q) const;
+  double advance(bool lumped, double beta, std::span<const double> r, std::span<const double> c, std::span<double> p,
+                 std::span<double> q) const;
   Offset nonzeros() const { return value_start_.back(); }
   Offset bytes() const;
 

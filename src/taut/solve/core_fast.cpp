@@ -43,18 +43,19 @@ Rounding rounding_of(const LinearSystem& system, bool in_single) {
 // |error|_A / |x|_A where the stop test ends, in tolerances: by the bound on the core's condition.
 double allowed_error(double rho) { return rho >= 0.0 ? std::min(most_allowed, std::sqrt(2.0 * (1.0 + rho))) : 1.0; }
 
-// y = P x: the blocks of the mask.
-void multiply_masked(const BlockCsr& a, std::span<const std::uint8_t> mask, std::span<const double> x, std::span<double> y) {
+// y = P x: the blocks of the mask, and the others lumped or not at all.
+void multiply_core(const BlockCsr& a, std::span<const std::uint8_t> mask, bool lumped, std::span<const double> x, std::span<double> y) {
   const BlockPattern& p = *a.pattern;
   parallel_for(p.rows(), 256, [&](Index begin, Index end) {
     for (Index i = begin; i < end; ++i) {
       const Index rows = p.dim(i), width = p.width(i);
       for (Index r = 0; r < rows; ++r) y[p.dof_start[i] + r] = 0.0;
       for (Index k = p.row_start[i]; k < p.row_start[i + 1]; ++k) {
-        if (!mask[k]) continue;
+        if (!mask[k] && !lumped) continue;
         const double* block = a.block(i, k);
+        const Index from = mask[k] ? p.column_dof[k] : p.dof_start[i];
         for (Index r = 0; r < rows; ++r)
-          for (Index c = 0; c < p.dim(p.column[k]); ++c) y[p.dof_start[i] + r] += block[r * width + c] * x[p.column_dof[k] + c];
+          for (Index c = 0; c < p.dim(p.column[k]); ++c) y[p.dof_start[i] + r] += block[r * width + c] * x[from + c];
       }
     }
   });
@@ -83,12 +84,12 @@ bool CoreFast::factorize(CholeskyPrecision precision, const LinearSystem& system
   summary.precision = precision == CholeskyPrecision::single_precision ? "single" : "double";
   const BlockCsr& a = *system.matrix;
   const NodeBasis basis = free_basis(system);
-  const RowsVisitor update_remainder = [&](Index begin, Index end) { remainder_.update_rows(a, begin, end); };
+  const BlocksOutside outside{lumped_, [&](Index begin, Index end) { remainder_.update_rows(a, begin, end); }};
   if (starts_at_rest_) {
-    summary.status = factor_.factorize(a, basis, load_, &delta0_, update_remainder);
+    summary.status = factor_.factorize(a, basis, load_, &delta0_, outside);
     delta_ = delta0_;
   } else {
-    summary.status = factor_.factorize(a, basis, load_, delta0_, r_, delta_, update_remainder);
+    summary.status = factor_.factorize(a, basis, load_, delta0_, r_, delta_, outside);
   }
   if (summary.status.ok() && !std::isfinite(delta0_))
     summary.status = {Outcome::not_finite, "the right-hand side overflows the factor's precision"};
@@ -98,12 +99,18 @@ bool CoreFast::factorize(CholeskyPrecision precision, const LinearSystem& system
 bool CoreFast::begin_in_double(const LinearSystem& system, SolveSummary& summary) {
   summary.remark = fmt::format("double precision: {}", summary.status.message);
   ++summary.fallbacks;
+  if (factorize(CholeskyPrecision::double_precision, system, summary)) return true;
+  if (!lumped_ || summary.status.outcome != Outcome::not_positive_definite) return false;
+  // Not what springs alone would leave.
+  lumped_ = false;
+  summary.remark += "; the blocks outside the core not lumped: " + summary.status.message;
+  ++summary.fallbacks;
   return factorize(CholeskyPrecision::double_precision, system, summary);
 }
 
 // For the search direction c and w = P c: wᵀ P̃⁻¹ w / cᵀ w, which is 1 but for the factor's rounding. Takes q_ for w.
 double CoreFast::factor_quality(const BlockCsr& a) {
-  multiply_masked(a, factor_.analyzed_blocks(), c_, q_);
+  multiply_core(a, factor_.analyzed_blocks(), lumped_, c_, q_);
   const double energy = dot(c_, q_);
   return factor_.solve_forward(q_) / energy;
 }
@@ -155,7 +162,7 @@ KrylovResult CoreFast::iterate(const LinearSystem& system, std::span<double> x, 
     if (!(size > limit) || result.iterations >= max_iterations) break;
     const double beta = previous == 0.0 ? 0.0 : delta / previous;
     factor_.solve_backward(beta, c_);
-    const double curvature = from_a ? multiply_dot(a, c_, q_) : remainder_.advance(beta, r_, c_, p_, q_);
+    const double curvature = from_a ? multiply_dot(a, c_, q_) : remainder_.advance(lumped_, beta, r_, c_, p_, q_);
     if (!(curvature > 0.0)) {
       is_indefinite = true;
       break;
@@ -205,6 +212,7 @@ void CoreFast::run(const LinearSystem& system, std::span<double> x, SolveSummary
   summary.reduce_ms = timer.lap();
 
   start(system, x);
+  lumped_ = system.rho >= 0.0 && system.matrix->pattern->uniform_dim == 3;
   summary.solve_ms = timer.lap();
   const bool in_single = factorize(CholeskyPrecision::single_precision, system, summary);
   if (!in_single && !begin_in_double(system, summary)) return;

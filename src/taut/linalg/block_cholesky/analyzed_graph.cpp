@@ -28,6 +28,17 @@ AnalyzedGraph analyzed_graph(const BlockPattern& pattern, std::span<const std::u
   return result;
 }
 
+UnanalyzedBlocks unanalyzed_blocks(const BlockPattern& pattern, std::span<const std::uint8_t> mask) {
+  UnanalyzedBlocks result;
+  result.row_start.push_back(0);
+  for (Index i = 0; i < pattern.rows(); ++i) {
+    for (Index k = pattern.row_start[i]; k < pattern.row_start[i + 1]; ++k)
+      if (!mask[k] && k != pattern.diagonal[i]) result.value.push_back(pattern.block_offset[k]);
+    result.row_start.push_back(static_cast<Index>(result.value.size()));
+  }
+  return result;
+}
+
 std::string AnalyzedGraph::mismatch(const BlockPattern& pattern) const {
   if (pattern.rows() != rows) return fmt::format("the matrix has {} nodes, the analysed one had {}", pattern.rows(), rows);
   std::size_t n = 0;  // node[n]: the next analysed node

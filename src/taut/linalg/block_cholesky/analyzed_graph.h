@@ -27,4 +27,10 @@ struct AnalyzedGraph {
 // mask: one byte per block of the pattern, 0 for blocks that are left out; empty: all are in. Diagonal blocks always are.
 AnalyzedGraph analyzed_graph(const BlockPattern& pattern, std::span<const std::uint8_t> mask = {});
 
+// The blocks of the pattern that are left out, row by row: the first column of each in its row of A.
+struct UnanalyzedBlocks {
+  std::vector<Index> row_start, value;
+};
+UnanalyzedBlocks unanalyzed_blocks(const BlockPattern& pattern, std::span<const std::uint8_t> mask);
+
 }  // namespace taut

@@ -20,14 +20,25 @@ Index find_block(const BlockPattern& p, Index node, Index other) {
   return k < 0 ? -1 : p.block_offset[k];
 }
 
+typedef double Doubles __attribute__((vector_size(32), aligned(8), may_alias));
+
 // A 3x3 block, rounded to T. Reads and writes four numbers where there are as many.
 template <class T>
 TAUT_ALWAYS_INLINE void copy_block_3(const double* from, Index width, T* to) {
-  typedef double Doubles __attribute__((vector_size(32), aligned(8), may_alias));
   typedef T Four __attribute__((vector_size(4 * sizeof(T)), aligned(sizeof(T)), may_alias));
   for (Index j = 0; j < 2; ++j)
     *reinterpret_cast<Four*>(to + 3 * j) = __builtin_convertvector(*reinterpret_cast<const Doubles*>(from + j * width), Four);
   for (Index i = 0; i < 3; ++i) to[6 + i] = static_cast<T>(from[2 * width + i]);
+}
+
+// The sum of 3x3 blocks of a row, the first of which begins at column `first`. Reads one number behind the row.
+template <class T>
+TAUT_ALWAYS_INLINE void sum_blocks_3(const double* row, Index width, Index first, std::span<const Index> others, T* to) {
+  for (Index j = 0; j < 3; ++j, row += width) {
+    Doubles sum = *reinterpret_cast<const Doubles*>(row + first);
+    for (const Index other : others) sum += *reinterpret_cast<const Doubles*>(row + other);
+    for (Index i = 0; i < 3; ++i) to[3 * j + i] = static_cast<T>(sum[i]);
+  }
 }
 
 }  // namespace
@@ -45,6 +56,10 @@ void NumericFactor<T>::gather_row(const FactorSource& source, Index k) {
     std::fill(to, to + size, T(0));
     for (Index j = 0; j < dim && value >= 0; ++j)
       for (Index i = 0; i < p.dim(layout_.node[other]); ++i) to[j * other_weight + i] = static_cast<T>(row[j * width + value + i]);
+    if (e == layout_.block_start[k] && source.lumped)
+      for (Index l = source.lumped->row_start[node]; l < source.lumped->row_start[node + 1]; ++l)
+        for (Index j = 0; j < dim; ++j)
+          for (Index i = 0; i < dim; ++i) to[j * other_weight + i] += static_cast<T>(row[j * width + source.lumped->value[l] + i]);
     to += size;
   }
 }
@@ -58,13 +73,19 @@ void NumericFactor<T>::gather(const FactorSource& source) {
     const double* row = source.a.values.data() + p.value_start[i];
     for (Index l = 0; l < 3 * width; l += 8) __builtin_prefetch(row + prefetch_distance + l, 0, 2);
     T* to = gathered_.data() + layout_.gathered_start[k];
-    for (Index e = layout_.block_start[k]; e < layout_.block_start[k + 1]; ++e, to += 9) copy_block_3(row + layout_.block_value[e], width, to);
+    Index e = layout_.block_start[k];
+    if (source.lumped) {
+      const std::span<const Index> others = std::span(source.lumped->value).subspan(source.lumped->row_start[i], source.lumped->row_start[i + 1] - source.lumped->row_start[i]);
+      sum_blocks_3(row, width, layout_.block_value[e++], others, to);
+      to += 9;
+    }
+    for (; e < layout_.block_start[k + 1]; ++e, to += 9) copy_block_3(row + layout_.block_value[e], width, to);
   };
   parallel_for(p.rows(), rows_per_task, [&](Index begin, Index end) {
     for (Index i = begin; i < end; i += rows_at_once) {
       const Index stop = std::min(end, i + rows_at_once);
       for (Index row = i; row < stop; ++row) {
-        if (is_plain) {
+        if (is_plain && row + 1 < p.rows()) {
           row_3(row);
         } else if (layout_.place[row] >= 0) {
           gather_row(source, layout_.place[row]);

@@ -34,6 +34,7 @@ struct FactorSource {
   const BlockCsr& a;
   NodeBasis basis;
   bool pattern_is_analyzed;  // A has the analysed pattern itself; else one that fits it, and blocks are searched
+  const UnanalyzedBlocks* lumped = nullptr;  // each is added to its row's diagonal block
   const RowsVisitor* visit = nullptr;
 };
 
