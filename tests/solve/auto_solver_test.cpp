@@ -107,7 +107,7 @@ TEST(AutoSolver, TakesThePapersCoreWhereItCostsLess) {
   sheet.hold_some();
   ASSERT_NE(sheet.chosen, sheet.stretch);
   LinearSystem system = sheet.with_core(sheet.chosen);
-  system.stretch_core = sheet.stretch, system.stretch_rho = sheet.rho(sheet.stretch);
+  system.stretch_core = {sheet.stretch, sheet.rho(sheet.stretch)};
   const auto solver = make_solver(solver_options("auto", 1e-6));
   std::vector<double> x(sheet.b.size());
   SolveSummary summary;

@@ -14,7 +14,7 @@ namespace taut {
 
 namespace {
 
-constexpr const char* names[] = {auto_core_method, auto_core_method, auto_core_method, "upcg:projected_block_diagonal",
+constexpr const char* names[] = {auto_core_method, auto_core_method, auto_core_method, auto_core_method, "upcg:projected_block_diagonal",
                                  "upcg:ic0_core",  "upcg:ic0",       "block_cholesky"};
 
 constexpr double shortest_patience = 32, longest_patience = 256;  // solves
@@ -26,7 +26,7 @@ constexpr double core_condition = 18.0;                           // 2 (1 + ρ) 
 constexpr double loosest = 3.0;                                   // times the error that corePCG may leave
 constexpr double worst_condition = 1e12;                          // of what these methods can solve
 constexpr double nearly_all = 0.98;                               // of A's blocks in the core: the full core is the same
-constexpr double memory_version = 5;
+constexpr double memory_version = 6;
 
 // Times are sums, the rest is the last attempt's.
 void add_attempt(SolveSummary&& attempt, SolveSummary& sum) {
@@ -67,6 +67,7 @@ ConstrainedSolver& AutoSolver::solver(Method method) {
 
 bool AutoSolver::available(Method method, const SystemSize& size) {
   if (method == stretch_core) return size.stretch_core_nonzeros > 0.0;
+  if (method == unbent_core) return size.unbent_core_nonzeros > 0.0;
   return method != full_core || size.core_nonzeros < nearly_all * size.nonzeros;
 }
 
@@ -78,6 +79,8 @@ MethodWork AutoSolver::work(Method method, const SystemSize& size) const {
       return core_work(size, known.known() ? known : estimate_factor(size, size.core_nonzeros), r.preparations);
     case stretch_core:
       return core_work(size, known.known() ? known : estimate_factor(size, size.stretch_core_nonzeros), r.preparations);
+    case unbent_core:
+      return core_work(size, known.known() ? known : estimate_factor(size, size.unbent_core_nonzeros), r.preparations);
     case full_core:
       return core_work(size, known.known() ? known : estimate_factor(size, size.nonzeros), r.preparations);
     case block_diagonal:
@@ -113,7 +116,7 @@ AutoSolver::Method AutoSolver::choose(const SystemSize& size) const {
 
 // Of a method that has not been tried.
 double AutoSolver::least_iterations(Method method, const Solve& solve) const {
-  if (method == full_core) return 1.0;
+  if (has_core(method)) return 1.0;
   double least = least_trial;
   if (method == block_diagonal) {
     const double condition = block_diagonal_condition(*solve.original.matrix);
@@ -167,7 +170,7 @@ void AutoSolver::run(const LinearSystem& system, std::span<double> x, SolveSumma
 double AutoSolver::allowed_condition(const LinearSystem& system) { return system.rho >= 0.0 ? 2.0 * (1.0 + system.rho) : core_condition; }
 
 double AutoSolver::first_condition(Method method, const LinearSystem& system) {
-  return method == stretch_core && system.stretch_rho >= 0.0 ? 2.0 * (1.0 + system.stretch_rho) : block_diagonal_condition(*system.matrix);
+  return has_core(method) ? allowed_condition(system) : block_diagonal_condition(*system.matrix);
 }
 
 double AutoSolver::tolerance_for(Method method, const LinearSystem& system) const {
@@ -193,13 +196,15 @@ AutoSolver::Attempt AutoSolver::attempt(Method method, int most_iterations, Solv
   with.observer = observer;
   SolveSummary s;
   LinearSystem system = solve.system;
-  if (method == stretch_core) system.core = system.stretch_core, system.rho = system.stretch_rho, s.core = CoreUsed::stretch;
+  const auto take = [&](const OtherCore& other, CoreUsed used) { system.core = other.mask, system.rho = other.rho, s.core = used; };
+  if (method == stretch_core) take(system.stretch_core, CoreUsed::stretch);
+  if (method == unbent_core) take(system.unbent_core, CoreUsed::unbent);
   if (method == full_core) system.core = all_blocks(*system.matrix), system.rho = 0.0, s.core = CoreUsed::all;
   run_other(with, system, solve.x, s);
   if (s.status.ok() && !all_finite(solve.x)) s.status = {Outcome::not_finite, "the solution holds NaN or infinity"};
   learn(method, s, record, tolerance, solve);
 
-  const double error = tolerance * std::sqrt(records_[method].condition);
+  const double error = s.error_bound >= 0.0 ? s.error_bound : tolerance * std::sqrt(records_[method].condition);
   const bool loose = is_incomplete(method) && error > loosest * options_.tolerance * std::sqrt(allowed_condition(solve.original));
   const Outcome outcome = s.status.outcome;
   const bool solved = s.status.ok() && !loose;
@@ -234,10 +239,16 @@ void AutoSolver::learn(Method method, const SolveSummary& s, const CgCoefficient
     r.next_trial = solves_ + bar_after_failure;
     return;
   }
-  if (is_incomplete(method) && record.alpha.size() > 1) {
+  if (is_incomplete(method)) {
+    double seen = r.condition;
+    if (has_core(method)) {
+      if (s.error_bound > 0.0 && s.stop_value > 0.0) seen = std::pow(s.error_bound / s.stop_value, 2);
+    } else if (record.alpha.size() > 1) {
+      const SpectrumEnds ends = spectrum_ends(record);
+      if (ends.smallest > 0.0) seen = ends.largest / ends.smallest;
+    }
     // Few iterations see little of the spectrum: what was known before fades slowly.
-    const SpectrumEnds ends = spectrum_ends(record);
-    r.condition = std::max(ends.smallest > 0.0 ? ends.largest / ends.smallest : r.condition, 0.7 * r.condition);
+    r.condition = std::max(seen, 0.7 * r.condition);
   }
   if (s.status.outcome == Outcome::max_iterations) {
     // What it would have taken at this rate, but no more than a few times what was seen.

@@ -1,10 +1,11 @@
 #pragma once
 // The solver `auto`: in each solve the method that should cost least, of
 //
-//   core_fast                        on whatever core the system has, with a bound on its iterations; the measure of the others
-//                                    and, where that is another, on the paper's: at soft stretch springs or very stiff ones it may be
-//                                    better
-//                                    and on all of A: a direct solve in single precision, refined; where all springs are strong
+//   core_fast                        on the core that is the system's own, with a bound on its iterations; the measure of the others
+//                                    on the paper's where that is another: the least set-up, and few iterations far beyond what their
+//                                    bound promises
+//                                    on all but bending: that reaches twice as far and so costs most, and is seldom needed in the core
+//                                    on all of A: a direct solve in single precision, refined
 //   upcg:projected_block_diagonal    no set-up; for soft or quiet cloth. Projected: the bound on its condition holds for the blocks of Ã,
 //                                    not for those of A restricted to the free directions
 //   upcg:ic0_core, upcg:ic0          little set-up, but iterations grow with the stiffness, and they may break down
@@ -25,9 +26,10 @@
 //
 // Same accuracy: the stop test's norm depends on the preconditioner, |e|_A/|x|_A <= sqrt(cond(M⁻¹A)) tolerance. A method whose condition
 // (by Lanczos, from the coefficients of its own last solve) is above corePCG's bound gets a tolerance as much smaller; what stopped too
-// early goes on with another method.
+// early goes on with another method. core_fast proves its error after the solve, SolveSummary::error_bound; (error_bound/stop_value)² then
+// is what the condition is to others.
 //
-// Before a method's first solve its condition is taken for its core's bound, or that of the block diagonal (solve/core_bound.h).
+// Before a method's first solve its condition is taken for that of the block diagonal (solve/core_bound.h), a core's for the own core's bound.
 //
 // Deterministic. What later choices depend on is in memory(), a few numbers, so that a resumed simulation takes the same way.
 
@@ -55,9 +57,10 @@ class AutoSolver : public ConstrainedSolver {
   bool is_direct() const override { return last_solved_ == direct; }
 
  private:
-  enum Method : int { core, stretch_core, full_core, block_diagonal, ic0_core, ic0, direct, method_count };
+  enum Method : int { core, stretch_core, unbent_core, full_core, block_diagonal, ic0_core, ic0, direct, method_count };
   // Whether its accuracy has to be learnt.
   static bool is_incomplete(Method method) { return method != core && method != full_core && method != direct; }
+  static bool has_core(Method method) { return method == core || method == stretch_core || method == unbent_core || method == full_core; }
   static bool available(Method method, const SystemSize& size);
   static double first_condition(Method method, const LinearSystem& system);
   static double allowed_condition(const LinearSystem& system);

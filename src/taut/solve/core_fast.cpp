@@ -169,6 +169,7 @@ KrylovResult CoreFast::iterate(const LinearSystem& system, std::span<double> x, 
     }
     const double alpha = delta / curvature;
     step_along(alpha, c_, q_, x, r_);
+    energy_ += alpha * delta;
     is_true = from_a;
     if (from_a && in_single && result.iterations % check_every == check_every - 1) {
       if (const double quality = factor_quality(a); !(std::abs(quality - 1.0) < worst_quality)) {
@@ -221,10 +222,12 @@ void CoreFast::run(const LinearSystem& system, std::span<double> x, SolveSummary
   const int limit = iteration_limit(a.dofs());
   KrylovResult result;
   bound_iterations_ = 0;
+  energy_ = 0.0;
+  const bool from_rest = starts_at_rest_;
   if (delta0_ == 0.0) {
-    LinearSystem from_rest = system;
-    from_rest.guess = {};
-    initial_guess(from_rest, x);
+    LinearSystem at_rest = system;
+    at_rest.guess = {};
+    initial_guess(at_rest, x);
   } else {
     result = iterate(system, x, 0, limit, in_single);
   }
@@ -245,6 +248,7 @@ void CoreFast::run(const LinearSystem& system, std::span<double> x, SolveSummary
   }
   take_over(result, summary);
   if (system.rho >= 0.0) summary.bound_iterations = bound_iterations_;
+  if (lumped_ && from_rest && energy_ > 0.0) summary.error_bound = result.stop_value * std::sqrt(delta0_ / energy_);
   summary.factor_nonzeros = factor_.statistics().nonzeros;
   summary.factor_flops = factor_.statistics().flops;
   summary.left_out_nonzeros = static_cast<double>(remainder_.nonzeros());

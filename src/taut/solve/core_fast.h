@@ -58,6 +58,7 @@ class CoreFast : public ConstrainedSolver {
   bool starts_at_rest_ = false;               // the first residual is the load
   bool lumped_ = false;                       // P is without the springs outside the core
   double delta0_ = 0.0, delta_ = 0.0;         // b̂ᵀ P̃⁻¹ b̂, and of the residual at the factorisation
+  double energy_ = 0.0;                       // |x - x0|_A² that the loop has found
   int bound_iterations_ = 0;                  // of the parts of the loop so far
   std::vector<double> load_, r_, c_, p_, q_;  // b̂, residual, direction, its products with P and A
 };

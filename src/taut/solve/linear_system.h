@@ -15,7 +15,8 @@
 //   core         one byte per block of A, 1 for the blocks of the matrix core (paper Section 6); empty: only block-diagonal blocks
 //   rho          ρ of docs/mathematics.md, 5 for that core: what the blocks outside it add to the diagonal, relative to the masses; bounds
 //                corePCG's iterations. Negative: not known
-//   stretch_core, stretch_rho    the paper's core and its ρ where `core` is another, else empty: `auto` tries both
+//   stretch_core, unbent_core    other cores and their ρ, where `core` is a third, else empty: the paper's, and all but what only bending couples.
+//                `auto` tries them
 // Units: A kg, b N s, x m/s when x is a velocity change; A kg, b kg m, x m when it is a displacement (BDF2).
 
 #include <cstdint>
@@ -28,6 +29,12 @@
 
 namespace taut {
 
+// A core's mask and ρ, as LinearSystem::core and ::rho.
+struct OtherCore {
+  std::span<const std::uint8_t> mask;
+  double rho = -1.0;
+};
+
 struct LinearSystem {
   const BlockCsr* matrix = nullptr;
   std::span<const double> rhs;
@@ -39,12 +46,11 @@ struct LinearSystem {
   std::span<const double> positions;
   std::span<const std::uint8_t> core;
   double rho = -1.0;
-  std::span<const std::uint8_t> stretch_core;
-  double stretch_rho = -1.0;
+  OtherCore stretch_core, unbent_core;
 };
 
-// Which springs the core of a solve had: LinearSystem::core, its stretch_core, or all of them.
-enum class CoreUsed { own, stretch, all };
+// Which springs the core of a solve had: LinearSystem::core, one of the others, or all of them.
+enum class CoreUsed { own, stretch, unbent, all };
 
 // What a solve did. Times in milliseconds.
 struct SolveSummary {
@@ -54,6 +60,7 @@ struct SolveSummary {
   int iterations = 0;            // 0 for direct methods
   double stop_value = 0.0;       // iterative: sqrt(δ/δ0) at the end (residual ratio for BiCGSTAB)
   double start_value = 0.0;      // the same for the initial guess
+  double error_bound = -1.0;     // |error|_A / |x|_A at the end is no larger (core_fast, from rest); negative: not known
   int bound_iterations = -1;     // core PCG: what they cannot exceed (solve/core_bound.h); -1: no bound known
   double relative_residual = 0;  // true one, recomputed from A, b, x: |S(b - A x)| / |S(b - A(I-S)z)|; not what the method believes
   double reduce_ms = 0.0;        // forming Ã, b̃ and the core

@@ -24,7 +24,8 @@ SystemSize size_of(const LinearSystem& system) {
   const double core_blocks = system.core.empty() ? p.rows() : blocks_of(system.core);
   size.nonzeros = free * static_cast<double>(p.value_count());
   size.core_nonzeros = free * core_blocks * per_block;
-  size.stretch_core_nonzeros = free * blocks_of(system.stretch_core) * per_block;
+  size.stretch_core_nonzeros = free * blocks_of(system.stretch_core.mask) * per_block;
+  size.unbent_core_nonzeros = free * blocks_of(system.unbent_core.mask) * per_block;
   return size;
 }
 

@@ -31,7 +31,7 @@ struct MethodWork {
 struct SystemSize {
   double unknowns = 0.0, nodes = 0.0;          // free ones; nodes: a third of them
   double nonzeros = 0.0, core_nonzeros = 0.0;  // of Ã and of its core, both triangles
-  double stretch_core_nonzeros = 0.0;          // of the paper's core where that is another, else 0
+  double stretch_core_nonzeros = 0.0, unbent_core_nonzeros = 0.0;  // of the other cores, 0 where there is none
 };
 SystemSize size_of(const LinearSystem& system);
 

@@ -45,9 +45,8 @@ Stepper::Stepper(Index nodes, std::vector<const ForceModel*> models, ExternalFor
       newton_(newton),
       chooses_core_(solver.chooses_core()),
       wants_rho_(solver.name == "auto" || solver.name.starts_with("core_")),
-      core_(stretch_core()),
-      core_springs_(assembler_.elements_in(core_)),
       a_(assembler_.pattern()) {
+  take_core(stretch_core(), core_);
   if (integrator_->is_nonlinear()) relinearised_a_ = a_;
   current_a_ = &a_;
   const std::size_t n = static_cast<std::size_t>(nodes);
@@ -64,21 +63,35 @@ std::vector<std::uint8_t> Stepper::chosen_core(double h) const {
   return taut::choose_core(*assembler_.pattern(), block_bounds(h), external_.masses());
 }
 
+std::vector<std::uint8_t> Stepper::unbent_core() const {
+  std::vector<std::uint8_t> mask = stretch_core();
+  const std::vector<std::uint8_t> shear = assembler_.core_mask(ForceClass::shear);
+  for (std::size_t k = 0; k < mask.size(); ++k) mask[k] |= shear[k];
+  return mask;
+}
+
+void Stepper::take_core(std::vector<std::uint8_t> mask, Core& core) {
+  core.springs = assembler_.elements_in(mask);
+  core.mask = std::move(mask);
+}
+
 Index Stepper::core_springs(CoreUsed core) const {
   if (core == CoreUsed::all)
     return assembler_.elements_in(std::vector<std::uint8_t>(static_cast<std::size_t>(assembler_.pattern()->blocks()), 1));
-  return core == CoreUsed::stretch && !stretch_core_.empty() ? stretch_core_springs_ : core_springs_;
+  if (core == CoreUsed::stretch && !stretch_core_.mask.empty()) return stretch_core_.springs;
+  if (core == CoreUsed::unbent && !unbent_core_.mask.empty()) return unbent_core_.springs;
+  return core_.springs;
 }
 
 void Stepper::choose_core(double h) {
   core_h_ = h;
   if (wants_rho_) stiffness_ = stiffness_ratio(*assembler_.pattern(), block_bounds(h), external_.masses());
   if (!chooses_core_) return;
-  core_ = chosen_core(h);
-  core_springs_ = assembler_.elements_in(core_);
-  stretch_core_ = stretch_core();
-  stretch_core_springs_ = assembler_.elements_in(stretch_core_);
-  if (stretch_core_ == core_) stretch_core_.clear();
+  take_core(chosen_core(h), core_);
+  take_core(stretch_core(), stretch_core_);
+  take_core(unbent_core(), unbent_core_);
+  if (unbent_core_.mask == core_.mask || unbent_core_.mask == stretch_core_.mask || stretch_core_.mask == core_.mask) unbent_core_ = {};
+  if (stretch_core_.mask == core_.mask) stretch_core_ = {};
 }
 
 void Stepper::begin(const State& state, double h) {
@@ -93,7 +106,10 @@ void Stepper::begin(const State& state, double h) {
   current_guess_ = guess_;
   guess_is_iterate_ = false;
   current_a_ = &a_;
-  if (wants_rho_) measure_rho(), first_rho_ = rho_, first_stretch_rho_ = stretch_rho_;
+  if (wants_rho_) {
+    measure_rho();
+    for (Core* core : cores()) core->first_rho = core->rho;
+  }
   assemble_ms_ = timer.milliseconds();
 }
 
@@ -106,7 +122,7 @@ SolveSummary Stepper::solve(const ConstraintSet& constraints, std::span<const Ve
   for (std::size_t i = 0; i < impulses.size(); ++i) rhs_[i] += per_impulse * impulses[i];
   integrator_->prescribe(constraints, *state_, h_, z_);
   current_a_ = &a_;
-  rho_ = first_rho_, stretch_rho_ = first_stretch_rho_;
+  for (Core* core : cores()) core->rho = core->first_rho;
   current_guess_ = guess_;
   guess_is_iterate_ = false;
   newton_iterations_ = 0;
@@ -175,11 +191,11 @@ double Stepper::free_norm(const ConstraintSet& constraints, std::span<const Vec3
 }
 
 void Stepper::measure_rho() {
-  rho_ = remainder_ratio();
-  if (!stretch_core_.empty()) stretch_rho_ = taut::remainder_ratio(*current_a_, stretch_core_, external_.masses());
+  for (Core* core : cores())
+    if (!core->mask.empty()) core->rho = taut::remainder_ratio(*current_a_, core->mask, external_.masses());
 }
 
-double Stepper::remainder_ratio() const { return taut::remainder_ratio(*current_a_, core_, external_.masses()); }
+double Stepper::remainder_ratio() const { return taut::remainder_ratio(*current_a_, core_.mask, external_.masses()); }
 
 LinearSystem Stepper::system() const {
   LinearSystem system;
@@ -190,10 +206,10 @@ LinearSystem Stepper::system() const {
   system.guess = flat(current_guess_);
   system.guess_is_iterate = guess_is_iterate_;
   system.stiffness = stiffness_;
-  system.core = core_;
-  system.rho = rho_;
-  system.stretch_core = stretch_core_;
-  system.stretch_rho = stretch_rho_;
+  system.core = core_.mask;
+  system.rho = core_.rho;
+  system.stretch_core = {stretch_core_.mask, stretch_core_.rho};
+  system.unbent_core = {unbent_core_.mask, unbent_core_.rho};
   if (state_) system.positions = flat(state_->x);
   return system;
 }

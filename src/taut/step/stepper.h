@@ -12,6 +12,7 @@
 // Constraint impulse (N s, on each node): j = (I - S)(A u - b), scaled to an impulse (docs/mathematics.md, 3.6). A positive n·j pushes
 // along n.
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -53,7 +54,7 @@ class Stepper {
   const BlockCsr& matrix() const { return *current_a_; }
   // Linear solves of the last solve() after its first; 0 unless the integrator is nonlinear.
   int newton_iterations() const { return newton_iterations_; }
-  std::span<const std::uint8_t> core_mask() const { return core_; }
+  std::span<const std::uint8_t> core_mask() const { return core_.mask; }
   // Elements whose blocks off the diagonal are in the core.
   Index core_springs(CoreUsed core = CoreUsed::own) const;
   std::span<const Vec3> unknown() const { return unknown_; }
@@ -67,8 +68,10 @@ class Stepper {
   double assemble_ms() const { return assemble_ms_; }
   // ρ of docs/mathematics.md, 5 for the assembled system and its core.
   double remainder_ratio() const;
-  // The two cores that a solver may be given, for steps of up to h: all stretch springs, or those that are strong (solve/core_choice.h).
+  // The cores that a solver may be given, for steps of up to h: all stretch springs, these and shear, or those that are strong
+  // (solve/core_choice.h).
   std::vector<std::uint8_t> stretch_core() const { return assembler_.core_mask(ForceClass::stretch); }
+  std::vector<std::uint8_t> unbent_core() const;
   std::vector<std::uint8_t> chosen_core(double h) const;
 
  private:
@@ -87,12 +90,15 @@ class Stepper {
   NewtonOptions newton_;
   bool chooses_core_, wants_rho_;
   double core_h_ = 0.0;
-  double rho_ = -1.0, first_rho_ = -1.0;  // of current_a_ and a_; negative: not asked for
   double stiffness_ = -1.0;
-  double stretch_rho_ = -1.0, first_stretch_rho_ = -1.0;
-  std::vector<std::uint8_t> core_;
-  std::vector<std::uint8_t> stretch_core_;  // where core_ is another
-  Index core_springs_ = 0, stretch_core_springs_ = 0;
+  struct Core {
+    std::vector<std::uint8_t> mask;
+    Index springs = 0;
+    double rho = -1.0, first_rho = -1.0;  // of current_a_ and a_; negative: not asked for
+  };
+  std::array<Core*, 3> cores() { return {&core_, &stretch_core_, &unbent_core_}; }
+  void take_core(std::vector<std::uint8_t> mask, Core& core);
+  Core core_, stretch_core_, unbent_core_;  // the last two with an empty mask where core_ is as good
 
   const State* state_ = nullptr;
   const ConstraintSet* constraints_ = nullptr;
