@@ -54,6 +54,8 @@ void set_thread_count(int count) {
 
 int thread_count() { return workers().count; }
 
+int thread_slot() { return workers().count == 1 ? 0 : std::max(0, tbb::this_task_arena::current_thread_index()); }
+
 void detail::run_parallel(Index n, Index grain, const std::function<void(Index, Index)>& body) {
   Workers& w = workers();
   char start_token = 0, end_token = 0;

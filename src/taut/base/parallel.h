@@ -21,6 +21,9 @@ namespace taut {
 // Not to be called while a loop runs.
 void set_thread_count(int count);
 int thread_count();
+// 0 ... thread_count() - 1, for the body of a loop or task: another number for each thread that runs one at the same time. For scratch memory;
+// results must not depend on it.
+int thread_slot();
 
 namespace detail {
 void run_parallel(Index n, Index grain, const std::function<void(Index, Index)>& body);

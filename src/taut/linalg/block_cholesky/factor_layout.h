@@ -5,8 +5,10 @@
 // Every supernode is a front (front_kernels.h). Its rows are padding and its pivots, then the unknowns of its row nodes, in the order of
 // elimination.
 //
-//   arena    panels, which live while their front is eliminated, and updates, which live until the parent has taken them in; later ones
-//            reuse the place, so most of this stays in a cache. Tasks that may run at the same time get places that do not overlap.
+//   scratch  of each thread, for the task at hand: panels, which live while their front is eliminated, and updates, which live until the
+//            parent has taken them in; later ones reuse the place, so all of this stays in a cache
+//   arena    the same of the fronts that are tasks of their own, and the updates that tasks hand on: places of tasks that may run at the
+//            same time do not overlap
 //   packed   panels one after the other in the order of elimination: the factor L, which the solves stream through
 //   vector   vector_size() entries a front: what the solves work on
 //
@@ -33,7 +35,8 @@ struct Front {
   // before theirs hold nothing else.
   Index run_begin = 0, run_split = 0, run_end = 0;
   Index spread_begin = 0, spread_split = 0, spread_end = 0;
-  Offset panel = 0, update = 0;          // in the arena
+  Offset panel = 0, update = 0;
+  bool panel_in_scratch = false, update_in_scratch = false;  // else in the arena
   Offset packed = 0, vector = 0;
 };
 
@@ -66,7 +69,7 @@ struct FactorLayout {
   std::vector<Offset> gathered_start;  // per place in the order: where its blocks begin among those gathered from A
   std::vector<FrontTask> task;
   TaskTree task_tree;
-  Offset arena_size = 0, packed_size = 0, vector_size = 0, gathered_size = 0;  // elements
+  Offset arena_size = 0, scratch_size = 0, packed_size = 0, vector_size = 0, gathered_size = 0;  // elements
   double flops = 0.0;                                       // of the padded fronts
 
   Offset bytes() const;

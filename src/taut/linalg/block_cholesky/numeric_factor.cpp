@@ -32,6 +32,10 @@ void NumericFactor<T>::plan() {
   planned_threads_ = thread_count();
   plan_tasks(layout_, planned_threads_);
   arena_ = AlignedArray<T>(layout_.arena_size);
+  // Of different threads on pages of their own.
+  constexpr Offset page = 4096 / sizeof(T);
+  scratch_of_thread_ = (layout_.scratch_size + page - 1) / page * page;
+  scratch_ = AlignedArray<T>(scratch_of_thread_ * planned_threads_);
 }
 
 template <class T>
@@ -58,8 +62,9 @@ Status NumericFactor<T>::factorize(const FactorSource& source, std::span<const I
   gather(source);
   const auto run = [&](Index t) {
     const FrontTask& task = layout_.task[t];
+    T* scratch = scratch_.data() + scratch_of_thread_ * thread_slot();
     for (Index s = task.begin; s < task.end; ++s) {
-      eliminate(s, task.shared);
+      eliminate(s, task.shared, scratch);
       if (fate_[s] != Fate::eliminated) continue;
       for (std::size_t k = 0; k < loads.size(); ++k)
         forward(s, {start, loads[k].scale}, loads[k].b, static_cast<int>(loads.size() - 1 - k));
@@ -70,35 +75,35 @@ Status NumericFactor<T>::factorize(const FactorSource& source, std::span<const I
 }
 
 template <class T>
-void NumericFactor<T>::eliminate(Index s, bool shared) {
+void NumericFactor<T>::eliminate(Index s, bool shared, T* scratch) {
   const Front& front = layout_.front[s];
   for (Index i = front.child_begin; i < front.child_end; ++i)
     if (fate_[layout_.child[i]] != Fate::eliminated) {
       fate_[s] = Fate::skipped;
       return;
     }
-  T* panel = arena_.data() + front.panel;
+  T* panel = (front.panel_in_scratch ? scratch : arena_.data()) + front.panel;
   std::fill(panel, panel + front.shape.panel_size(), T(0));
   assemble(front, panel);
-  add_children(front, panel, true);
+  add_children(front, scratch, panel, true);
   bad_pivot_[s] = factor_panel(front, panel, shared);
   fate_[s] = bad_pivot_[s].column < 0 ? Fate::eliminated : Fate::bad_pivot;
   if (fate_[s] != Fate::eliminated) return;
-  form_update(front, panel, shared);
+  form_update(front, scratch, panel, shared);
   pack(front, panel, shared);
 }
 
 template <class T>
-void NumericFactor<T>::form_update(const Front& front, const T* panel, bool shared) {
+void NumericFactor<T>::form_update(const Front& front, T* scratch, const T* panel, bool shared) {
   const Index tiles = front.shape.update_tiles();
   if (tiles == 0) return;
-  T* update = arena_.data() + front.update;
+  T* update = update_of(front, scratch);
   if (shared) {
     parallel_for(tiles, 4, [&](Index begin, Index end) { kernels_.form_update(front.shape, panel, update, begin, end); });
   } else {
     kernels_.form_update(front.shape, panel, update, 0, tiles);
   }
-  add_children(front, update, false);
+  add_children(front, scratch, update, false);
 }
 
 template <class T>
@@ -187,10 +192,10 @@ void NumericFactor<T>::assemble_projected(const BlockPlace& place, Index k, cons
 }
 
 template <class T>
-void NumericFactor<T>::add_children(const Front& front, T* target, bool target_is_panel) {
+void NumericFactor<T>::add_children(const Front& front, T* scratch, T* target, bool target_is_panel) {
   for (Index i = front.child_begin; i < front.child_end; ++i) {
     const Front& child = layout_.front[layout_.child[i]];
-    const T* update = arena_.data() + child.update;
+    const T* update = update_of(child, scratch);
     const Index first_run = target_is_panel ? child.run_begin : child.run_split;
     const Index end_of_runs = target_is_panel ? child.run_split : child.run_end;
     const Index first_spread = target_is_panel ? child.spread_begin : child.spread_split;

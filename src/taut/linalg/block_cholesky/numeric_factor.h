@@ -72,7 +72,7 @@ class NumericFactor {
   const FactorLayout& layout() const { return layout_; }
   const char* instruction_set() const { return kernels_.instruction_set; }
   Offset panel_bytes() const { return packed_.bytes(); }
-  Offset bytes() const { return gathered_.bytes() + packed_.bytes() + arena_.bytes() + vectors_[0].bytes() + vectors_[1].bytes() + layout_.bytes(); }
+  Offset bytes() const { return gathered_.bytes() + packed_.bytes() + arena_.bytes() + scratch_.bytes() + vectors_[0].bytes() + vectors_[1].bytes() + layout_.bytes(); }
 
  private:
   static constexpr Offset read_too_many = 3;  // entries, behind a block's last column
@@ -83,13 +83,15 @@ class NumericFactor {
   void take_dims(const FactorSource& source);
   void gather(const FactorSource& source);
   void gather_row(const FactorSource& source, Index k);
-  void eliminate(Index s, bool shared);
+  // scratch: the thread's
+  void eliminate(Index s, bool shared, T* scratch);
   void assemble(const Front& front, T* panel) const;
   void assemble_node(const Front& front, Index k, T* panel) const;
   void assemble_projected(const BlockPlace& place, Index k, const T* block, T* column, Index slab_rows) const;
-  void add_children(const Front& front, T* target, bool target_is_panel);
+  T* update_of(const Front& front, T* scratch) { return (front.update_in_scratch ? scratch : arena_.data()) + front.update; }
+  void add_children(const Front& front, T* scratch, T* target, bool target_is_panel);
   BadPivot factor_panel(const Front& front, T* panel, bool shared) const;
-  void form_update(const Front& front, const T* panel, bool shared);
+  void form_update(const Front& front, T* scratch, const T* panel, bool shared);
   void pack(const Front& front, const T* panel, bool shared);
   Status verdict(const BlockCsr& a) const;
   // slot: of vectors_ and norm2_; 0 is the one that backward() takes.
@@ -99,7 +101,8 @@ class NumericFactor {
   const FrontKernels<T>& kernels_;
   FactorLayout layout_;
   int planned_threads_ = 0;
-  AlignedArray<T> gathered_, packed_, arena_;
+  AlignedArray<T> gathered_, packed_, arena_, scratch_;
+  Offset scratch_of_thread_ = 0;
   std::array<AlignedArray<T>, 2> vectors_;
   std::vector<Fate> fate_;                    // per front
   std::vector<BadPivot> bad_pivot_;           // per front

@@ -35,30 +35,37 @@ class ArenaPlan {
   ArenaPlan(FactorLayout& layout, std::span<const std::uint8_t> is_shared)
       : layout_(layout), is_shared_(is_shared), peak_(layout.front.size(), 0) {}
 
-  // Offsets relative to the arena's begin, from the roots down: a front's subtree begins at base[s]. Sizes are needed first, so subtrees
-  // are planned relative to their own begin, upwards, and moved afterwards.
-  Offset plan() {
+  // Subtrees are planned relative to their own begin, upwards, since their sizes are needed first; then moved, from the roots down.
+  void plan() {
     const Index n = static_cast<Index>(layout_.front.size());
     std::vector<Offset> begin(layout_.front.size(), 0);  // of a subtree relative to its parent's
-    Offset roots_end = 0;
+    layout_.arena_size = layout_.scratch_size = 0;
     for (Index s = 0; s < n; ++s) plan_front(s, begin);
     for (Index s = n - 1; s >= 0; --s) {
-      const Index p = layout_.front[s].parent;
-      if (p < 0) {
-        begin[s] = roots_end;
-        roots_end += peak_[s];
+      Front& f = layout_.front[s];
+      if (f.parent < 0) {
+        begin[s] = layout_.arena_size;
+        layout_.arena_size += peak_[s];
       } else {
-        begin[s] += begin[p];
+        begin[s] += begin[f.parent];
       }
-      layout_.front[s].update += begin[s];
-      layout_.front[s].panel += begin[s];
+      f.update += begin[s];
+      if (is_task_root(s)) begin[s] = 0;  // the scratch's
+      f.panel += begin[s];
     }
-    return roots_end;
   }
 
  private:
+  // Of a subtree that one thread eliminates.
+  bool is_task_root(Index s) const {
+    const Index p = layout_.front[s].parent;
+    return !is_shared_[s] && (p < 0 || is_shared_[p]);
+  }
+
   void plan_front(Index s, std::vector<Offset>& begin) {
     Front& f = layout_.front[s];
+    f.panel_in_scratch = !is_shared_[s];
+    f.update_in_scratch = !is_shared_[s] && !is_task_root(s);
     Offset next = 0, peak = 0;
     live_.clear();
     for (Index i = f.child_begin; i < f.child_end; ++i) {
@@ -70,8 +77,16 @@ class ArenaPlan {
       peak = std::max(peak, next + peak_[c]);
       next = is_shared_[s] ? next + peak_[c] : std::max(next, update_end);
     }
+    const Offset children_end = live_.empty() ? 0 : live_.back().second;
+    if (is_task_root(s)) {
+      f.panel = children_end;
+      layout_.scratch_size = std::max({layout_.scratch_size, peak, f.panel + f.shape.panel_size()});
+      f.update = 0;
+      peak_[s] = f.shape.update_size();
+      return;
+    }
     f.update = first_gap(f.shape.update_size());
-    f.panel = std::max(f.update + f.shape.update_size(), live_.empty() ? 0 : live_.back().second);
+    f.panel = std::max(f.update + f.shape.update_size(), children_end);
     peak_[s] = std::max(peak, f.panel + f.shape.panel_size());
   }
 
@@ -86,7 +101,7 @@ class ArenaPlan {
 
   FactorLayout& layout_;
   std::span<const std::uint8_t> is_shared_;
-  std::vector<Offset> peak_;  // size of the arena of each subtree
+  std::vector<Offset> peak_;  // what each subtree takes where it is planned
   std::vector<std::pair<Offset, Offset>> live_;
 };
 
@@ -128,7 +143,7 @@ void plan_tasks(FactorLayout& layout, int threads) {
     task_parent.push_back(p < 0 ? -1 : task_of[p]);
   }
   layout.task_tree = TaskTree(std::move(task_parent));
-  layout.arena_size = ArenaPlan(layout, is_shared).plan();
+  ArenaPlan(layout, is_shared).plan();
 }
 
 }  // namespace taut
