@@ -142,7 +142,9 @@ KrylovResult CoreFast::iterate(const LinearSystem& system, std::span<double> x, 
   double delta = delta_, previous = 0.0;  // previous: of the direction in c_; 0 begins anew
   double seen = std::sqrt(delta);         // of the last residual that came from A itself
   double begin = seen, aim = limit;       // of this part of the loop: where it began, what it had to reach
-  bool is_true = true, is_indefinite = false, from_a = false;  // from_a: products are taken from A
+  bool is_true = true, is_indefinite = false;
+  // Products are taken from A: where known ones might not be exact enough, this is less than a look at the end.
+  bool from_a = rounding.worst * seen > harmless;
   result.start_value = begin / scale;
   if (coefficients) *coefficients = {};
   std::ranges::fill(p_, 0.0);
