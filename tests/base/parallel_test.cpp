@@ -133,6 +133,28 @@ TEST_F(Parallel, SeveralThreadsReallyWork) {
   }
 }
 
+// Each range marks its slot, looks around for a while and finds no other in it.
+TEST_F(Parallel, SlotsAreOfOneThreadAtATime) {
+  for (const int threads : {1, 2, 4}) {
+    set_thread_count(threads);
+    std::array<std::atomic<int>, 4> inside{};
+    std::atomic<int> strangers = 0, outside = 0;
+    parallel_for(400, 1, [&](Index, Index) {
+      const int slot = thread_slot();
+      if (slot < 0 || slot >= threads) {
+        ++outside;
+        return;
+      }
+      if (++inside[static_cast<std::size_t>(slot)] > 1) ++strangers;
+      for (int k = 0; k < 20; ++k) std::this_thread::yield();
+      --inside[static_cast<std::size_t>(slot)];
+    });
+    EXPECT_EQ(strangers, 0) << threads << " threads";
+    EXPECT_EQ(outside, 0) << threads << " threads";
+  }
+  EXPECT_EQ(thread_slot(), 0);
+}
+
 TEST_F(Parallel, CollectedListsAreInOrder) {
   for (const int threads : {1, 2, 4}) {
     set_thread_count(threads);

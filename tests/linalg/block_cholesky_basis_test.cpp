@@ -136,6 +136,50 @@ TEST_P(BlockFactorBasis, TakesInWhatHasAPlace) {
   EXPECT_GT(left, 20);
 }
 
+// Springs outside the mask, lumped: what is factorised is the matrix of the others, with constraints and without, however many threads.
+TEST_P(BlockFactorBasis, WithoutTheSpringsOutside) {
+  Random random(5);
+  for (const Index nodes : {2, 40, 400}) {
+    BasisCase c = random_case(random, nodes);
+    const BlockPattern& p = *c.a.pattern;
+    BlockCsr inside(c.a.pattern);
+    for (BlockCsr* a : {&c.a, &inside}) std::ranges::fill(a->values, 0.0);
+    const auto add = [&](BlockCsr& a, Index i, Index j, const Mat3& block) {
+      for (Index r = 0; r < 3; ++r)
+        for (Index column = 0; column < 3; ++column) a.block(i, p.find(i, j))[r * p.width(i) + column] += block(r, column);
+    };
+    for (Index i = 0; i < nodes; ++i) {
+      for (BlockCsr* a : {&c.a, &inside}) add(*a, i, i, Mat3::Identity());
+      for (Index k = p.row_start[i]; k < p.row_start[i + 1]; ++k) {
+        const Index j = p.column[k];
+        if (j <= i) continue;
+        c.mask[p.find(j, i)] = c.mask[k];
+        const Vec3 e = random.direction();
+        const Mat3 spring = 10.0 * e * e.transpose();
+        for (BlockCsr* a : {&c.a, &inside}) {
+          if (a == &inside && !c.mask[k]) continue;
+          add(*a, i, i, spring), add(*a, j, j, spring), add(*a, i, j, -spring), add(*a, j, i, -spring);
+        }
+      }
+    }
+    ASSERT_TRUE(cholesky_.analyze(c.a.pattern, c.mask).ok());
+    const std::vector<double> b = random.vector(c.a.dofs());
+    for (const bool held : {false, true}) {
+      const Eigen::MatrixXd q = held ? c.basis.dense() : Eigen::MatrixXd::Identity(3 * nodes, 3 * nodes);
+      const Eigen::VectorXd expected = q * (q.transpose() * dense(inside) * q).llt().solve(q.transpose() * as_eigen(b));
+      std::vector<int> seen(static_cast<std::size_t>(nodes), 0);
+      const BlocksOutside outside{true, [&](Index begin, Index end) {
+                                    for (Index i = begin; i < end; ++i) ++seen[i];
+                                  }};
+      std::vector<double> x(b.size());
+      ASSERT_TRUE(cholesky_.factorize(c.a, held ? c.basis.view() : NodeBasis{}, b, nullptr, outside).ok());
+      cholesky_.solve_backward(0.0, x);
+      EXPECT_LT(relative_difference(x, expected), tolerance()) << nodes << (held ? ", held" : "");
+      EXPECT_EQ(std::ranges::count(seen, 1), nodes) << "each row is to be seen once";
+    }
+  }
+}
+
 TEST_P(BlockFactorBasis, WithoutBasisAndMask) {
   Random random(2);
   const BlockCsr a = random_spd(random, make_pattern(random_graph(random, 50, 3, 20), random_dims(random, 50)), 1e-2);

@@ -57,6 +57,30 @@ TEST(BlockRemainder, GivesTheProductOfADirection) {
     }
 }
 
+// Lumped, E's rows sum to zero and P's to A's.
+TEST(BlockRemainder, GivesTheProductWhereTheOthersAreLumped) {
+  Random random(33);
+  for (const double share : {0.0, 0.5, 1.0}) {
+    Split s(random, std::vector<Index>(70, 3), share);
+    for (Index i = 0; i < 70; ++i) {
+      Mat3 sum = Mat3::Zero();
+      for (Index j = 0; j < 70; ++j) sum += s.e.block<3, 3>(3 * i, 3 * j);
+      s.e.block<3, 3>(3 * i, 3 * i) -= sum, s.p.block<3, 3>(3 * i, 3 * i) += sum;
+    }
+    BlockRemainder remainder;
+    remainder.analyze(s.a.pattern, s.mask);
+    // Row by row, from the last on.
+    for (Index i = 69; i >= 0; --i) remainder.update_rows(s.a, i, i + 1);
+    const std::vector<double> c = random.vector(s.a.dofs());
+    const Eigen::VectorXd r = s.p * as_eigen(c);
+    std::vector<double> residual(r.begin(), r.end()), p(residual.size(), 7.0), q(p.size());
+    const double energy = remainder.advance(true, 0.0, residual, c, p, q);
+    EXPECT_EQ(p, residual);
+    EXPECT_LT((as_eigen(q) - dense(s.a) * as_eigen(c)).norm(), 1e-12 * as_eigen(q).norm());
+    EXPECT_NEAR(energy, as_eigen(c).dot(dense(s.a) * as_eigen(c)), 1e-12 * std::abs(energy));
+  }
+}
+
 TEST(BlockRemainder, DeterministicForAnyNumberOfThreads) {
   Random random(32);
   Split s(random, std::vector<Index>(3000, 3), 0.5);

@@ -121,6 +121,26 @@ TEST(AutoSolver, TakesThePapersCoreWhereItCostsLess) {
   EXPECT_NE(solver->solve(system, x).core, CoreUsed::stretch);
 }
 
+// Where shear and bending are strong, all but bending in the core are enough, and the accuracy is proved.
+TEST(AutoSolver, LeavesBendingOutWhereItCostsMost) {
+  MaterialSheet sheet({.k_stretch = 6000, .k_shear = 6000, .k_bend = 50, .h = 16.7e-3, .motion = 0.3, .nodes = 41}, 66);
+  sheet.hold_some();
+  ASSERT_EQ(std::ranges::count(sheet.chosen, 0), 0);
+  LinearSystem system = sheet.with_core(sheet.chosen);
+  system.stretch_core = {sheet.stretch, sheet.rho(sheet.stretch)};
+  system.unbent_core = {sheet.unbent, sheet.rho(sheet.unbent)};
+  const auto solver = make_solver(solver_options("auto", 1e-3));
+  std::vector<double> x(sheet.b.size());
+  SolveSummary summary;
+  for (int step = 0; step < 10; ++step) summary = solver->solve(system, x);
+  ASSERT_TRUE(summary.status.ok()) << summary.status.message;
+  EXPECT_EQ(summary.core, CoreUsed::unbent) << summary.method;
+  EXPECT_LE(summary.iterations, summary.bound_iterations);
+  const double error = anorm_error(system, x, reference_solution(system));
+  EXPECT_LE(error, summary.error_bound + 1e-5);
+  EXPECT_LE(summary.error_bound, 3.0 * std::sqrt(2.0) * 1e-3);
+}
+
 // Where every spring is strong, a core that leaves some out costs more than all of them: the direct solve, in single precision.
 TEST(AutoSolver, TakesAllSpringsWhereAllAreStrong) {
   MaterialSheet sheet({.k_stretch = 60, .k_shear = 6e4, .k_bend = 6e3, .h = 3.67e-3, .nodes = 41}, 65);

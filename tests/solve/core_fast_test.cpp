@@ -51,6 +51,98 @@ TEST(CoreFast, TakesTheStepsOfCorePcg) {
   EXPECT_GT(smaller_than_all, 5);
 }
 
+// Where ρ is known the springs outside the core are taken out of it altogether: the same conjugate gradients as on a dense matrix of the
+// core's springs alone; and the error is proved.
+TEST(CoreFast, TakesTheStepsOfTheSpringsInTheCore) {
+  std::uint32_t seed = 20;
+  for (const double k_stretch : {60.0, 6e3, 6e5})
+    for (const double k_shear : {0.3, 30.0, 600.0}) {
+      MaterialSheet sheet({.k_stretch = k_stretch, .k_shear = k_shear, .k_bend = k_shear / 10, .h = 10e-3, .nodes = 9}, ++seed);
+      sheet.hold_some();
+      SCOPED_TRACE(sheet.material.describe());
+      sheet.core = sheet.stretch;
+      const LinearSystem system = sheet.with_core(sheet.stretch);
+      const std::vector<std::uint8_t> core = core_with_fill(sheet);
+      const BlockPattern& pattern = *sheet.a.pattern;
+      Eigen::MatrixXd p = dense(sheet.a);
+      for (Index i = 0; i < pattern.rows(); ++i)
+        for (Index k = pattern.row_start[i]; k < pattern.row_start[i + 1]; ++k) {
+          const Index j = pattern.column[k];
+          if (core[k] || j == i) continue;
+          p.block<3, 3>(3 * i, 3 * i) += p.block<3, 3>(3 * i, 3 * j);
+          p.block<3, 3>(3 * i, 3 * j).setZero();
+        }
+      const Eigen::MatrixXd u = sheet.dense_u(), a = u.transpose() * dense(sheet.a) * u;
+      const Eigen::LLT<Eigen::MatrixXd> factor(u.transpose() * p * u);
+      ASSERT_EQ(factor.info(), Eigen::Success);
+      Eigen::VectorXd r = u.transpose() * (as_eigen(sheet.b) - dense(sheet.a) * as_eigen(sheet.z)), c = Eigen::VectorXd::Zero(r.size());
+      const double delta0 = r.dot(factor.solve(r));
+      double delta = delta0, last = 0.0;
+      std::vector<double> stops;
+      while (stops.size() < 8 && (stops.empty() || stops.back() > 1e-5)) {
+        c = factor.solve(r) + (last > 0.0 ? delta / last : 0.0) * c;
+        r -= delta / c.dot(a * c) * (a * c);
+        last = delta, delta = r.dot(factor.solve(r));
+        stops.push_back(std::sqrt(delta / delta0));
+      }
+      const auto solver = make_solver(solver_options("core_fast", 0.5 * stops.back()));
+      std::vector<double> seen, x(sheet.b.size());
+      solver->observer = [&](int, double stop, std::span<const double>) { seen.push_back(stop); };
+      const SolveSummary summary = solver->solve(system, x);
+      ASSERT_TRUE(summary.status.ok()) << summary.status.message;
+      ASSERT_GE(seen.size(), stops.size());
+      for (std::size_t k = 0; k < stops.size(); ++k) EXPECT_NEAR(seen[k], stops[k], 0.05 * stops[k] + 1e-6) << k;
+    }
+}
+
+TEST(CoreFast, ProvesItsError) {
+  std::uint32_t seed = 40;
+  for (const double h : {1e-3, 10e-3, 33e-3})
+    for (const double k_stretch : {60.0, 6e3, 6e6})
+      for (const double k_shear : {0.3, 600.0}) {
+        MaterialSheet sheet({.k_stretch = k_stretch, .k_shear = k_shear, .k_bend = k_shear / 10, .h = h, .graded = seed % 2 == 0}, ++seed);
+        sheet.hold_some();
+        SCOPED_TRACE(sheet.material.describe());
+        const std::vector<std::uint8_t>& core = seed % 3 == 0 ? sheet.unbent : sheet.stretch;
+        std::vector<double> x(sheet.b.size());
+        const LinearSystem system = sheet.with_core(core);
+        const SolveSummary summary = sheet.solve("core_fast", core, 1e-3);
+        const auto solver = make_solver(solver_options("core_fast", 1e-3));
+        const SolveSummary same = solver->solve(system, x);
+        ASSERT_TRUE(summary.status.ok()) << summary.status.message;
+        EXPECT_EQ(summary.iterations, same.iterations);
+        const double error = anorm_error(system, x, reference_solution(system));
+        EXPECT_LE(error, same.error_bound * 1.01 + 1e-5);
+        EXPECT_LE(same.error_bound, std::sqrt(1.0 + 2.0 * system.rho) * 1.01 * same.stop_value + 1e-5);
+        EXPECT_LE(same.iterations, same.bound_iterations);
+      }
+}
+
+// What is no matrix of springs may lose its definiteness when blocks are lumped.
+TEST(CoreFast, LumpsNothingWhereThatFails) {
+  Random random(9);
+  ConstrainedCase c = random_case(random, {.only = 3});
+  const BlockPattern& p = *c.a.pattern;
+  Index most = 0;  // blocks of a row
+  for (Index i = 0; i < p.rows(); ++i) most = std::max(most, p.row_start[i + 1] - p.row_start[i]);
+  // The diagonal is less than what is left out of the longest row.
+  for_each_entry(c.a, [&](Index row, Index column, double& value) {
+    value = row == column ? 0.999 * (most - 1) : row / 3 != column / 3 && row % 3 == column % 3 ? -1.0 : 0.0;
+  });
+  c.core.assign(static_cast<std::size_t>(p.blocks()), 0);
+  LinearSystem system = c.system();
+  const Eigen::VectorXd expected = c.solution();
+  ASSERT_EQ(Eigen::LLT<Eigen::MatrixXd>(dense(c.a)).info(), Eigen::Success);
+  system.rho = 1.0;
+  std::vector<double> x(c.b.size());
+  const SolveSummary summary = make_solver(solver_options("core_fast", 1e-8))->solve(system, x);
+  ASSERT_TRUE(summary.status.ok()) << summary.status.message;
+  EXPECT_EQ(summary.fallbacks, 2) << summary.remark;
+  EXPECT_NE(summary.remark.find("not lumped"), std::string::npos);
+  EXPECT_LT(summary.error_bound, 0.0);
+  EXPECT_LT(relative_difference(x, expected), 1e-6);
+}
+
 // Single precision loses digits to the stiffness; the true residual, looked at on the way, brings them back.
 TEST(CoreFast, IsAsExactAsAskedForAtAnyStiffness) {
   const auto expect_exact = [](Material material, double tolerance, bool stiffness_is_known) {

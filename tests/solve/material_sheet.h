@@ -1,4 +1,4 @@
-// Sheets of springs with any stiffnesses, step size, masses and constraints: their matrix, and the two cores.
+// Sheets of springs with any stiffnesses, step size, masses and constraints: their matrix, and the cores.
 
 #pragma once
 
@@ -28,7 +28,7 @@ struct MaterialSheet : ConstrainedCase {
   Material material;
   Random random;
   std::vector<double> masses;
-  std::vector<std::uint8_t> chosen, stretch;
+  std::vector<std::uint8_t> chosen, stretch, unbent;
 
   MaterialSheet(const Material& m, std::uint32_t seed) : material(m), random(seed) {
     GridShape shape{.nu = m.nodes, .nv = m.nodes - 1};
@@ -62,7 +62,9 @@ struct MaterialSheet : ConstrainedCase {
     request.x = x, request.v = v, request.force = m.h, request.matrix_stiffness = m.h * m.h, request.matrix_damping = m.h;
     std::vector<Vec3> force(rest.size());
     assembler.assemble(std::vector<ForceRequest>(all.size(), request), {masses, 1.0, {}, 0.0}, a, force);
-    stretch = assembler.core_mask(ForceClass::stretch);
+    stretch = unbent = assembler.core_mask(ForceClass::stretch);
+    const std::vector<std::uint8_t> shear = assembler.core_mask(ForceClass::shear);
+    for (std::size_t k = 0; k < unbent.size(); ++k) unbent[k] |= shear[k];
     chosen = choose_core(*a.pattern, assembler.block_bounds(m.h * m.h, m.h), masses);
     core = chosen;
     const Index n = a.dofs();

@@ -57,6 +57,26 @@ TEST(StepperCore, IsTheStretchSpringsOrChosen) {
   }
 }
 
+TEST(StepperCore, OffersOtherCoresWithTheirRho) {
+  Cloth cloth;
+  Stepper stepper = cloth.stepper("auto", "");
+  for (const double h : {1e-3, 50e-3}) {
+    stepper.begin(cloth.state, h);
+    const LinearSystem system = stepper.system();
+    const bool all_are_strong = h > 1e-2;
+    // Where the paper's core leaves out little, it is the chosen one and there is no other.
+    EXPECT_EQ(system.stretch_core.mask.empty(), !all_are_strong);
+    EXPECT_EQ(system.unbent_core.mask.empty(), !all_are_strong);
+    if (!all_are_strong) continue;
+    const Index stretch = cloth.springs[0]->block_count(), shear = cloth.springs[1]->block_count();
+    EXPECT_EQ(stepper.core_springs(CoreUsed::stretch), stretch);
+    EXPECT_EQ(stepper.core_springs(CoreUsed::unbent), stretch + shear);
+    for (const OtherCore& core : {system.stretch_core, system.unbent_core})
+      EXPECT_EQ(core.rho, remainder_ratio(stepper.matrix(), core.mask, cloth.masses));
+    EXPECT_LT(system.unbent_core.rho, system.stretch_core.rho);
+  }
+}
+
 // |A_ii| <= (1 + σ) m_i in any state, and not far above it.
 TEST(StepperCore, BoundsTheStiffness) {
   for (const IntegratorKind kind : {IntegratorKind::semi_implicit_euler, IntegratorKind::bdf2}) {
