@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "bench/median.h"
 #include "taut/base/error.h"
 #include "taut/base/timer.h"
 #include "taut/constraint/reduction.h"
@@ -15,14 +16,6 @@
 namespace taut::app {
 
 namespace {
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  if (values.size() % 2) return *middle;
-  return 0.5 * (*middle + *std::max_element(values.begin(), middle));
-}
 
 // These show their answer only: PARDISO's CG needs the factor of an earlier step, and auto decides by its own stop rule. So their
 // iterations cannot be cut at a wanted error.

@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "bench/benches.h"
+#include "bench/median.h"
 #include "bench/peak.h"
 #include "bench/table.h"
 #include "taut/base/error.h"
@@ -21,25 +22,11 @@ namespace taut::app {
 
 namespace {
 
-constexpr int repetitions = 9;
-
 struct Grid {
   int side;
   const char* step;  // s
 };
 constexpr Grid grids[] = {{41, "6.67e-3"}, {81, "5.55e-3"}, {161, "3.67e-3"}, {321, "1.84e-3"}, {513, "1.15e-3"}};
-
-double median_ms(const std::function<void()>& work) {
-  work();
-  std::vector<double> times;
-  for (int k = 0; k < repetitions; ++k) {
-    Timer timer;
-    work();
-    times.push_back(timer.milliseconds());
-  }
-  std::ranges::nth_element(times, times.begin() + repetitions / 2);
-  return times[repetitions / 2];
-}
 
 double bytes_of(std::span<const std::uint8_t> blocks) { return 72.0 * static_cast<double>(std::ranges::count(blocks, std::uint8_t{1})); }
 
@@ -112,7 +99,7 @@ class Phases {
     add("outside the core: copied", 0.0, 8.0 * static_cast<double>(system.matrix->values.size()) + 8.0 * values, "double",
         median_ms([&] { remainder.update(*system.matrix); }));
     add("outside the core: product", 2.0 * values + 5.0 * static_cast<double>(n), 8.0 * values + 6.0 * 8.0 * static_cast<double>(n), "double",
-        median_ms([&] { remainder.advance(false, 0.5, r, c, p, q); }));
+        median_ms([&] { remainder.advance(true, 0.5, r, c, p, q); }));
   }
 
   void measure_solver(const LinearSystem& system, const char* name, int runs_wanted) {

@@ -1,10 +1,13 @@
 #pragma once
-// corePCG (paper Section 6) on Taut's own block factorisation: the method of solve/core_pcg.h, arranged for speed.
+// corePCG (paper Section 6) on Taut's own block factorisation: the method of solve/core_pcg.h, with a better core and arranged for speed.
 //
-//   P = A_core, Ã = Uᵀ A U, P̃ = Uᵀ P U      conjugate gradients on Ã ỹ = b̃, preconditioned by P̃ = L Lᵀ
+//   P = M + L_C, Ã = Uᵀ A U, P̃ = Uᵀ P U      conjugate gradients on Ã ỹ = b̃, preconditioned by P̃ = L Lᵀ
 //
-// - Neither Ã nor P̃ is formed: products take A or blocks of it, the factorisation takes A's core blocks, and constrained nodes are looked at one by one
-//   (solve/full_space.h).
+// - The springs outside the core are taken out of it altogether, where the paper leaves their part of the diagonal: blocks outside are lumped
+//   (docs/mathematics.md, 5). So P <= A, smooth motions meet eigenvalues near 1, and the error at the end is proved: error_bound of the summary.
+//   For elements of two nodes; done where ρ is known. Where it fails (a pivot of the lumped matrix in double precision), nothing is lumped.
+// - Neither Ã nor P̃ is formed: products take A or blocks of it, the factorisation takes A's core blocks, and constrained nodes are looked at
+//   one by one (solve/full_space.h).
 // - Ordering and symbolic work are done once per topology and core, whatever contacts do and whatever SolverOptions::reuse_analysis
 //   says; numbers are fresh in every solve.
 // - Springs outside the core whose block has a place in the factor, by fill-in, enter the core: they cost nothing there, so the core is
@@ -16,12 +19,12 @@
 //   steps turn the stiff part of the velocity change round), and to look at it costs a product and a forward solve.
 //
 // Precision. The factor is in single precision, and P c is as exact as its solves: after a reduction of the error from e0 to e1 the true
-// error is about e1 + η e0. With the unit roundoff u = 2⁻²⁴ (2⁻⁵³ once the factor is in double precision) and σ of LinearSystem::stiffness, measured: η = 0.3 to 3.6 u sqrt(σ) on wrinkled
-// cloth, up to 0.21 u σ on a flat sheet that hangs askew, where rounded stretch springs stiffen it across. Where 0.22 u (1 + σ) might
-// matter beside the error that the stop test allows, the residual is taken from A itself before the end, and on the way at
-// 8 u sqrt(1 + σ). If it is not what was believed, conjugate gradients begin anew, with products from A: then the factor only
-// preconditions. When a pivot fails, or the loop takes long and the factor proves wrong along its search directions (wᵀ P̃⁻¹ w = cᵀ w for
-// w = P c, looked at every eighth iteration), the factor is computed anew in double precision and the loop goes on from where it is; the
+// error is about e1 + η e0. With the unit roundoff u = 2⁻²⁴ (2⁻⁵³ once the factor is in double precision) and σ of LinearSystem::stiffness,
+// measured: η = 0.3 to 3.6 u sqrt(σ) on wrinkled cloth, up to 0.21 u σ on a flat sheet that hangs askew, where rounded stretch springs stiffen
+// it across. Where 0.22 u (1 + σ) might matter beside the error that the stop test allows, products are taken from A: then the factor only
+// preconditions. Else the residual is taken from A itself at 8 u sqrt(1 + σ); if it is not what was believed, conjugate gradients begin anew
+// with products from A. When a pivot fails, or the loop takes long and the factor proves wrong along its search directions (wᵀ P̃⁻¹ w = cᵀ w
+// for w = P c, looked at every eighth iteration), the factor is computed anew in double precision and the loop goes on from where it is; the
 // summary counts it.
 //
 // Stop test: core_pcg's.
