@@ -12,7 +12,8 @@ namespace taut::app {
 namespace {
 
 constexpr int chains = 12;  // enough to hide the latency of two units, few enough for 16 registers
-constexpr Index rounds = 4'000'000;
+constexpr Index rounds = 1'000'000;
+constexpr int runs = 60;  // a second or two: another program may take a core for a while
 
 // One function per instruction set and type: `chains` vectors x = x a + b, kept in registers. Returns something that depends on all of them.
 #define TAUT_FMA_LOOP(name, T, bytes, attributes)                          \
@@ -41,7 +42,7 @@ double best_rate(double (*loop)(T, T), int lanes) {
   const int threads = thread_count();
   double best = 1e30;
   std::vector<double> sink(static_cast<std::size_t>(threads));
-  for (int round = 0; round < 5; ++round) {
+  for (int run = 0; run < runs; ++run) {
     Timer timer;
     parallel_for(threads, 1, [&](Index begin, Index end) {
       for (Index t = begin; t < end; ++t) sink[t] += loop(T(0.999), T(1e-3));
