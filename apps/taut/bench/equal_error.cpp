@@ -19,7 +19,7 @@ struct Enough {};
 
 struct Watched {
   std::array<int, wanted_errors.size()> iterations;
-  std::array<double, wanted_errors.size()> stop{};  // the stop test's value there
+  std::array<double, wanted_errors.size()> stop{};  // the stop test's least value until there
   Status status;
   bool direct = false;
 };
@@ -37,9 +37,11 @@ SolverOptions options_for(const std::string& solver, double tolerance, int max_i
 Watched watch(const LinearSystem& system, const SolverOptions& options, std::span<const double> reference, double seconds) {
   Watched watched;
   watched.iterations.fill(-1);
+  double least = 1.0;
   const auto note = [&](int iteration, double stop, double error) {
+    least = std::min(least, stop);
     for (std::size_t e = 0; e < wanted_errors.size(); ++e)
-      if (watched.iterations[e] < 0 && error <= wanted_errors[e]) watched.iterations[e] = iteration, watched.stop[e] = stop;
+      if (watched.iterations[e] < 0 && error <= wanted_errors[e]) watched.iterations[e] = iteration, watched.stop[e] = least;
   };
   std::vector<double> x(system.rhs.size());
   const auto solver = make_solver(options);

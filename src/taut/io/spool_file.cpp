@@ -1,5 +1,6 @@
 #include "taut/io/spool_file.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -18,14 +19,28 @@ void SpoolFile::fail() const {
   throw InputError({folder_.string()}, "cannot be written: " + reason + "; check the folder's permissions and free space");
 }
 
+namespace {
+
+// A file without a name, which nothing is left of however the program ends; where the file system has no such thing, one whose name is gone
+// at once.
+int open_nameless(const std::filesystem::path& folder) {
+#ifdef O_TMPFILE
+  if (const int descriptor = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600); descriptor >= 0) return descriptor;
+#endif
+  std::string name = (folder / ".spool-XXXXXX").string();
+  const int descriptor = ::mkstemp(name.data());
+  if (descriptor >= 0) ::unlink(name.c_str());
+  return descriptor;
+}
+
+}  // namespace
+
 SpoolFile::SpoolFile(const std::filesystem::path& folder) : folder_(folder) {
   std::error_code failure;
   std::filesystem::create_directories(folder, failure);
   errno = 0;
-  std::string name = (folder / ".spool-XXXXXX").string();
-  const int descriptor = ::mkstemp(name.data());
+  const int descriptor = open_nameless(folder);
   if (descriptor < 0) fail();
-  ::unlink(name.c_str());
   file_ = ::fdopen(descriptor, "w+b");
   if (!file_) {
     ::close(descriptor);
