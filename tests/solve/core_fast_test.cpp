@@ -241,6 +241,23 @@ TEST(CoreFast, FallsBackToDoubleWhereSinglePrecisionLosesTheMasses) {
   EXPECT_LT(summary.iterations, 30);
 }
 
+// Where the stiffness says that single precision would lose the masses, it is not tried.
+TEST(CoreFast, BeginsInDoubleWhereSinglePrecisionWouldFail) {
+  for (const double k_stretch : {6e3, 6e8}) {
+    MaterialSheet sheet({.k_stretch = k_stretch}, 12);
+    sheet.hold_some();
+    LinearSystem system = sheet.with_core(sheet.stretch);
+    system.stiffness = 0.5 * block_diagonal_condition(*system.matrix) - 1.0;
+    std::vector<double> x(sheet.b.size());
+    const SolveSummary summary = make_solver(solver_options("core_fast", 1e-6))->solve(system, x);
+    ASSERT_TRUE(summary.status.ok()) << summary.status.message;
+    EXPECT_STREQ(summary.precision, k_stretch > 1e6 ? "double" : "single");
+    EXPECT_EQ(summary.fallbacks, 0) << summary.remark;
+    EXPECT_LE(summary.iterations, summary.bound_iterations);
+    EXPECT_LE(anorm_error(system, x, reference_solution(system)), summary.error_bound * 1.01 + 1e-9);
+  }
+}
+
 TEST(CoreFast, NothingToDo) {
   Random random(5);
   ConstrainedCase c = random_case(random, {.only = 0});

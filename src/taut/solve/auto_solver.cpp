@@ -229,7 +229,9 @@ AutoSolver::Attempt AutoSolver::attempt(Method method, int most_iterations, Solv
 
 void AutoSolver::learn(Method method, const SolveSummary& s, const CgCoefficients& record, double tolerance, Solve& solve) {
   Record& r = records_[method];
-  r.preparations = s.preparations + s.fallbacks;
+  // In double precision from the start it costs twice as much: half a preparation more (core_work).
+  const bool at_once_in_double = has_core(method) && s.fallbacks == 0 && std::string_view(s.precision) == "double";
+  r.preparations = s.preparations + s.fallbacks + (at_once_in_double ? 0.5 : 0.0);
   if (s.factor_nonzeros > 0.0) {
     r.factor_nonzeros = s.factor_nonzeros, r.factor_flops = s.factor_flops;
     r.left_out_nonzeros = std::max(0.0, s.left_out_nonzeros);

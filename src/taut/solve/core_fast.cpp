@@ -24,6 +24,8 @@ constexpr double harmless_share = 0.5;
 constexpr double most_allowed = 3.0;  // tolerances
 // The true residual is what was believed if it is at most this many times as large.
 constexpr double as_believed = 2.0;
+// Where rounding may be larger than this beside the masses, single precision is not tried: it would fail in most steps.
+constexpr double too_large_for_single = 2.0;
 // With products from A, the factor in single precision is looked at when convergence is slow, and taken for bad when it misjudges a
 // direction's energy by this share: then its rounding, not the springs outside the core, sets the number of iterations.
 constexpr int check_every = 8;
@@ -96,14 +98,16 @@ bool CoreFast::factorize(CholeskyPrecision precision, const LinearSystem& system
   return summary.status.ok();
 }
 
-bool CoreFast::begin_in_double(const LinearSystem& system, SolveSummary& summary) {
-  summary.remark = fmt::format("double precision: {}", summary.status.message);
-  ++summary.fallbacks;
+bool CoreFast::begin_in_double(const LinearSystem& system, bool single_has_failed, SolveSummary& summary) {
+  if (single_has_failed) {
+    summary.remark = fmt::format("double precision: {}", summary.status.message);
+    ++summary.fallbacks;
+  }
   if (factorize(CholeskyPrecision::double_precision, system, summary)) return true;
   if (!lumped_ || summary.status.outcome != Outcome::not_positive_definite) return false;
   // Not what springs alone would leave.
   lumped_ = false;
-  summary.remark += "; the blocks outside the core not lumped: " + summary.status.message;
+  summary.remark += fmt::format("{}the blocks outside the core not lumped: {}", summary.remark.empty() ? "" : "; ", summary.status.message);
   ++summary.fallbacks;
   return factorize(CholeskyPrecision::double_precision, system, summary);
 }
@@ -142,6 +146,7 @@ KrylovResult CoreFast::iterate(const LinearSystem& system, std::span<double> x, 
   double delta = delta_, previous = 0.0;  // previous: of the direction in c_; 0 begins anew
   double seen = std::sqrt(delta);         // of the last residual that came from A itself
   double begin = seen, aim = limit;       // of this part of the loop: where it began, what it had to reach
+  int begin_iterations = 0;               // and the iterations before it
   bool is_true = true, is_indefinite = false;
   // Products are taken from A: where known ones might not be exact enough, this is less than a look at the end.
   bool from_a = rounding.worst * seen > harmless;
@@ -157,11 +162,16 @@ KrylovResult CoreFast::iterate(const LinearSystem& system, std::span<double> x, 
     if (aim = std::max(limit, look_above * rounding.usual * seen); !is_true && size <= aim) {
       residual(system, x);
       const double now = std::sqrt(factor_.solve_forward(r_));
-      if (!(now <= as_believed * size)) end_part(), begin = now, previous = 0.0, from_a = true;
+      if (!(now <= as_believed * size)) end_part(), begin = now, begin_iterations = result.iterations, previous = 0.0, from_a = true;
       delta = now * now, seen = now, is_true = true;
       continue;
     }
     if (!(size > limit) || result.iterations >= max_iterations) break;
+    if (in_single && system.rho >= 0.0 && result.iterations - begin_iterations >= core_iteration_bound(system.rho, begin / scale, aim / scale)) {
+      result.status = {Outcome::breakdown, fmt::format("more than the {} iterations that the core allows: its factor is not exact enough in single precision",
+                                                       result.iterations - begin_iterations)};
+      break;
+    }
     const double beta = previous == 0.0 ? 0.0 : delta / previous;
     factor_.solve_backward(beta, c_);
     const double curvature = from_a ? multiply_dot(a, c_, q_) : remainder_.advance(lumped_, beta, r_, c_, p_, q_);
@@ -217,8 +227,9 @@ void CoreFast::run(const LinearSystem& system, std::span<double> x, SolveSummary
   start(system, x);
   lumped_ = system.rho >= 0.0 && system.matrix->pattern->uniform_dim == 3;
   summary.solve_ms = timer.lap();
-  const bool in_single = factorize(CholeskyPrecision::single_precision, system, summary);
-  if (!in_single && !begin_in_double(system, summary)) return;
+  const bool tries_single = !(rounding_of(system, true).worst > too_large_for_single);
+  const bool in_single = tries_single && factorize(CholeskyPrecision::single_precision, system, summary);
+  if (!in_single && !begin_in_double(system, tries_single, summary)) return;
   summary.factor_ms = timer.lap();
 
   const int limit = iteration_limit(a.dofs());
@@ -241,7 +252,7 @@ void CoreFast::run(const LinearSystem& system, std::span<double> x, SolveSummary
     if (!all_finite(x)) initial_guess(system, x);
     residual(system, x);
     starts_at_rest_ = false;
-    if (!begin_in_double(system, summary)) return;
+    if (!begin_in_double(system, true, summary)) return;
     summary.factor_ms += timer.lap();
     result = iterate(system, x, done, limit - done, false);
     result.iterations += done;

@@ -24,8 +24,8 @@
 // it across. Where 0.22 u (1 + σ) might matter beside the error that the stop test allows, products are taken from A: then the factor only
 // preconditions. Else the residual is taken from A itself at 8 u sqrt(1 + σ); if it is not what was believed, conjugate gradients begin anew
 // with products from A. When a pivot fails, or the loop takes long and the factor proves wrong along its search directions (wᵀ P̃⁻¹ w = cᵀ w
-// for w = P c, looked at every eighth iteration), the factor is computed anew in double precision and the loop goes on from where it is; the
-// summary counts it.
+// for w = P c, looked at every eighth iteration), or takes more iterations than the bound, the factor is computed anew in double precision and
+// the loop goes on from where it is; the summary counts it. Where 0.22 u (1 + σ) is above 2 (h² k/m above 4e7) it is in double precision at once.
 //
 // Stop test: core_pcg's.
 
@@ -50,7 +50,7 @@ class CoreFast : public ConstrainedSolver {
   void start(const LinearSystem& system, std::span<double> x);
   bool factorize(CholeskyPrecision precision, const LinearSystem& system, SolveSummary& summary);
   void residual(const LinearSystem& system, std::span<const double> x);
-  bool begin_in_double(const LinearSystem& system, SolveSummary& summary);
+  bool begin_in_double(const LinearSystem& system, bool single_has_failed, SolveSummary& summary);
   double factor_quality(const BlockCsr& a);
   KrylovResult iterate(const LinearSystem& system, std::span<double> x, int done, int max_iterations, bool in_single);
 
