@@ -30,6 +30,7 @@ AnalyzedGraph analyzed_graph(const BlockPattern& pattern, std::span<const std::u
 // The blocks of the pattern that are left out, row by row: the first column of each in its row of A.
 struct UnanalyzedBlocks {
   std::vector<Index> row_start, value;
+  std::span<const Index> row(Index i) const { return {value.data() + row_start[i], value.data() + row_start[i + 1]}; }
 };
 UnanalyzedBlocks unanalyzed_blocks(const BlockPattern& pattern, std::span<const std::uint8_t> mask);
 

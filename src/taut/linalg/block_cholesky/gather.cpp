@@ -57,9 +57,9 @@ void NumericFactor<T>::gather_row(const FactorSource& source, Index k) {
     for (Index j = 0; j < dim && value >= 0; ++j)
       for (Index i = 0; i < p.dim(layout_.node[other]); ++i) to[j * other_weight + i] = static_cast<T>(row[j * width + value + i]);
     if (e == layout_.block_start[k] && source.lumped)
-      for (Index l = source.lumped->row_start[node]; l < source.lumped->row_start[node + 1]; ++l)
+      for (const Index lumped : source.lumped->row(node))
         for (Index j = 0; j < dim; ++j)
-          for (Index i = 0; i < dim; ++i) to[j * other_weight + i] += static_cast<T>(row[j * width + source.lumped->value[l] + i]);
+          for (Index i = 0; i < dim; ++i) to[j * other_weight + i] += static_cast<T>(row[j * width + lumped + i]);
     to += size;
   }
 }
@@ -75,8 +75,7 @@ void NumericFactor<T>::gather(const FactorSource& source) {
     T* to = gathered_.data() + layout_.gathered_start[k];
     Index e = layout_.block_start[k];
     if (source.lumped) {
-      const std::span<const Index> others = std::span(source.lumped->value).subspan(source.lumped->row_start[i], source.lumped->row_start[i + 1] - source.lumped->row_start[i]);
-      sum_blocks_3(row, width, layout_.block_value[e++], others, to);
+      sum_blocks_3(row, width, layout_.block_value[e++], source.lumped->row(i), to);
       to += 9;
     }
     for (; e < layout_.block_start[k + 1]; ++e, to += 9) copy_block_3(row + layout_.block_value[e], width, to);
@@ -85,6 +84,7 @@ void NumericFactor<T>::gather(const FactorSource& source) {
     for (Index i = begin; i < end; i += rows_at_once) {
       const Index stop = std::min(end, i + rows_at_once);
       for (Index row = i; row < stop; ++row) {
+        // The last row ends where A does: nothing may be read behind it.
         if (is_plain && row + 1 < p.rows()) {
           row_3(row);
         } else if (layout_.place[row] >= 0) {

@@ -72,7 +72,10 @@ class NumericFactor {
   const FactorLayout& layout() const { return layout_; }
   const char* instruction_set() const { return kernels_.instruction_set; }
   Offset panel_bytes() const { return packed_.bytes(); }
-  Offset bytes() const { return gathered_.bytes() + packed_.bytes() + arena_.bytes() + scratch_.bytes() + vectors_[0].bytes() + vectors_[1].bytes() + layout_.bytes(); }
+  Offset bytes() const {
+    return gathered_.bytes() + packed_.bytes() + arena_.bytes() + scratch_.bytes() + vectors_[0].bytes() + vectors_[1].bytes() +
+           layout_.bytes();
+  }
 
  private:
   static constexpr Offset read_too_many = 3;  // entries, behind a block's last column
