@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 
 #include "taut/scene/scene_file.h"
 #include "taut/scene/simulation.h"
@@ -42,9 +44,10 @@ TEST(AutoScene, SolvesEveryRegime) {
                                      fmt::format("solver.tolerance={}", tolerance)});
         EXPECT_EQ(scene.solver.name, "auto") << "the default";
         Simulation simulation(scene);
-        double error = 0.0;
+        double error = 0.0, solved_stiffness = 0.0;
         simulation.on_solved = [&](Simulation& solved, const SolveSummary&) {
           const LinearSystem system = solved.stepper().system();
+          solved_stiffness = system.stiffness;
           error = anorm_error(system, flat(solved.stepper().unknown()), reference_solution(system));
         };
         for (int step = 0; step < 12; ++step) {
@@ -52,7 +55,9 @@ TEST(AutoScene, SolvesEveryRegime) {
           const Status status = simulation.step(record);
           ASSERT_TRUE(status.ok()) << status.message;
           EXPECT_LT(error, 10.0 * tolerance) << record.solver << ", step " << step;
-          EXPECT_LT(record.relative_residual, 100.0 * tolerance) << record.solver << ", step " << step;
+          // The residual's own norm can be larger than the error's by sqrt(cond(A)), and is where rounded springs pull across.
+          const double most_residual = tolerance * std::max(100.0, std::sqrt(solved_stiffness));
+          EXPECT_LT(record.relative_residual, most_residual) << record.solver << ", step " << step;
           if (record.solver.starts_with("core") && (record.contact_passes == 1 || record.bound_iterations >= 0)) {
             EXPECT_LE(record.iterations, record.bound_iterations);
             if (h > 1e-3 || k_stretch > 60.0) {
