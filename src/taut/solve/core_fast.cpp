@@ -36,9 +36,9 @@ struct Rounding {
   double usual = 0.0, worst = 0.0;
 };
 
-Rounding rounding_of(const LinearSystem& system, bool in_single) {
-  const double unit = in_single ? 0x1p-24 : 0x1p-53;
-  if (system.stiffness < 0.0) return {CoreFast::unknown_rounding * (unit / 0x1p-24), unit / 0x1p-24};
+Rounding rounding_in_single(const LinearSystem& system) {
+  constexpr double unit = 0x1p-24;
+  if (system.stiffness < 0.0) return {CoreFast::unknown_rounding, 1.0};
   return {4.0 * unit * std::sqrt(1.0 + system.stiffness), 0.22 * unit * (1.0 + system.stiffness)};
 }
 
@@ -77,7 +77,7 @@ bool CoreFast::analyze_if_new(const LinearSystem& system, SolveSummary& summary)
     pattern_ = nullptr;
     return false;
   }
-  remainder_.analyze(pattern_, factor_.analyzed_blocks());
+  if (pattern_->uniform_dim == 3) remainder_.analyze(pattern_, factor_.analyzed_blocks());
   return true;
 }
 
@@ -86,7 +86,9 @@ bool CoreFast::factorize(CholeskyPrecision precision, const LinearSystem& system
   summary.precision = precision == CholeskyPrecision::single_precision ? "single" : "double";
   const BlockCsr& a = *system.matrix;
   const NodeBasis basis = free_basis(system);
-  const BlocksOutside outside{lumped_, [&](Index begin, Index end) { remainder_.update_rows(a, begin, end); }};
+  knows_products_ = lumped_ && precision == CholeskyPrecision::single_precision;
+  BlocksOutside outside{lumped_};
+  if (knows_products_) outside.visit = [&](Index begin, Index end) { remainder_.update_rows(a, begin, end); };
   if (starts_at_rest_) {
     summary.status = factor_.factorize(a, basis, load_, &delta0_, outside);
     delta_ = delta0_;
@@ -141,7 +143,7 @@ void CoreFast::start(const LinearSystem& system, std::span<double> x) {
 KrylovResult CoreFast::iterate(const LinearSystem& system, std::span<double> x, int done, int max_iterations, bool in_single) {
   const BlockCsr& a = *system.matrix;
   KrylovResult result;
-  const Rounding rounding = rounding_of(system, in_single);
+  const Rounding rounding = rounding_in_single(system);
   const double scale = std::sqrt(delta0_), limit = options_.tolerance * scale, harmless = harmless_share * allowed_error(system.rho) * limit;
   double delta = delta_, previous = 0.0;  // previous: of the direction in c_; 0 begins anew
   double seen = std::sqrt(delta);         // of the last residual that came from A itself
@@ -149,7 +151,7 @@ KrylovResult CoreFast::iterate(const LinearSystem& system, std::span<double> x, 
   int begin_iterations = 0;               // and the iterations before it
   bool is_true = true, is_indefinite = false;
   // Products are taken from A: where known ones might not be exact enough, this is less than a look at the end.
-  bool from_a = rounding.worst * seen > harmless;
+  bool from_a = !knows_products_ || rounding.worst * seen > harmless;
   result.start_value = begin / scale;
   if (coefficients) *coefficients = {};
   std::ranges::fill(p_, 0.0);
@@ -174,7 +176,7 @@ KrylovResult CoreFast::iterate(const LinearSystem& system, std::span<double> x, 
     }
     const double beta = previous == 0.0 ? 0.0 : delta / previous;
     factor_.solve_backward(beta, c_);
-    const double curvature = from_a ? multiply_dot(a, c_, q_) : remainder_.advance(lumped_, beta, r_, c_, p_, q_);
+    const double curvature = from_a ? multiply_dot(a, c_, q_) : remainder_.advance(beta, r_, c_, p_, q_);
     if (!(curvature > 0.0)) {
       is_indefinite = true;
       break;
@@ -227,7 +229,7 @@ void CoreFast::run(const LinearSystem& system, std::span<double> x, SolveSummary
   start(system, x);
   lumped_ = system.rho >= 0.0 && system.matrix->pattern->uniform_dim == 3;
   summary.solve_ms = timer.lap();
-  const bool tries_single = !(rounding_of(system, true).worst > too_large_for_single);
+  const bool tries_single = !(rounding_in_single(system).worst > too_large_for_single);
   const bool in_single = tries_single && factorize(CholeskyPrecision::single_precision, system, summary);
   if (!in_single && !begin_in_double(system, tries_single, summary)) return;
   summary.factor_ms = timer.lap();

@@ -12,14 +12,15 @@
 //   says; numbers are fresh in every solve.
 // - Springs outside the core whose block has a place in the factor, by fill-in, enter the core: they cost nothing there, so the core is
 //   larger than the paper's and the iterations are fewer. Most shear springs of a grid do. The bound for the smaller core holds.
-// - A c = P c + E c, and P c is known: only the blocks of E, outside the core, are multiplied (linalg/block_remainder.h).
+// - A c = P c + E c, and P c is known: only the blocks of E, outside the core, are multiplied (linalg/block_remainder.h). So in single
+//   precision and where they are lumped; else products take A.
 // - The stop test needs forward solves only, δ = rᵀ P̃⁻¹ r = |L⁻¹ Uᵀ r|²: δ0 and the first δ come with the factorisation, and the backward
 //   solve of the last residual is saved. k iterations take k forward and k backward solves.
 // - It starts from rest, x = (I-S) z, unless the guess is an iterate: last step's x is farther from x than 0 is in most steps (implicit
 //   steps turn the stiff part of the velocity change round), and to look at it costs a product and a forward solve.
 //
 // Precision. The factor is in single precision, and P c is as exact as its solves: after a reduction of the error from e0 to e1 the true
-// error is about e1 + η e0. With the unit roundoff u = 2⁻²⁴ (2⁻⁵³ once the factor is in double precision) and σ of LinearSystem::stiffness,
+// error is about e1 + η e0. With the unit roundoff u = 2⁻²⁴ and σ of LinearSystem::stiffness,
 // measured: η = 0.3 to 3.6 u sqrt(σ) on wrinkled cloth, up to 0.21 u σ on a flat sheet that hangs askew, where rounded stretch springs stiffen
 // it across. Where 0.22 u (1 + σ) might matter beside the error that the stop test allows, products are taken from A: then the factor only
 // preconditions. Else the residual is taken from A itself at 8 u sqrt(1 + σ); if it is not what was believed, conjugate gradients begin anew
@@ -60,6 +61,7 @@ class CoreFast : public ConstrainedSolver {
   BlockRemainder remainder_;
   bool starts_at_rest_ = false;               // the first residual is the load
   bool lumped_ = false;                       // P is without the springs outside the core
+  bool knows_products_ = false;               // the remainder has been taken from the matrix
   double delta0_ = 0.0, delta_ = 0.0;         // b̂ᵀ P̃⁻¹ b̂, and of the residual at the factorisation
   double energy_ = 0.0;                       // |x - x0|_A² that the loop has found
   int bound_iterations_ = 0;                  // of the parts of the loop so far

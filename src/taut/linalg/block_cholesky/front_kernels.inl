@@ -126,20 +126,13 @@ struct Block {
     for (Int j = 0; j < Columns; ++j)
       for (Int i = 0; i < vectors; ++i) v[j][i] = Register{};
   }
-  // Rows of the slab above `above`, which lies in the block's first register, become 0.
-  TAUT_INLINE void clear_above(Int above) {
-    decltype(Register{} < Register{}) number;
-    for (Int i = 0; i < count; ++i) number[i] = i;
-    const auto keep = number >= above - row;
-    for (Int j = 0; j < Columns; ++j) v[j][0] = (Register)((decltype(number))v[j][0] & keep);
-  }
   // v -= A Bᵀ over k columns: a is a slab, b points at the group's first row in another one.
   TAUT_INLINE void subtract_product(const T* a, const T* b, Int columns) {
     a += row;
     for (Int k = 0; k < columns; ++k, a += slab_rows<T>, b += slab_rows<T>) {
       Register column[vectors];
       for (Int i = 0; i < vectors; ++i) column[i] = load_as<Register>(a + i * count);
-#pragma GCC unroll 8
+#pragma GCC unroll 16
       for (Int j = 0; j < Columns; ++j) {
         const T factor = b[j];
 #pragma GCC unroll 4
@@ -149,41 +142,17 @@ struct Block {
   }
   // v = v L⁻ᵀ with the block's triangle of L (diagonal inverted), whose first row and column are at `triangle`.
   TAUT_INLINE void solve_triangle(const T* triangle) {
-#pragma GCC unroll 8
+#pragma GCC unroll 16
     for (Int j = 0; j < Columns; ++j) {
 #pragma GCC unroll 4
       for (Int i = 0; i < vectors; ++i) v[j][i] *= triangle[j * slab_rows<T> + j];
-#pragma GCC unroll 8
+#pragma GCC unroll 16
       for (Int l = j + 1; l < Columns; ++l)
 #pragma GCC unroll 4
         for (Int i = 0; i < vectors; ++i) v[l][i] -= v[j][i] * triangle[j * slab_rows<T> + l];
     }
   }
 };
-
-TAUT_INLINE float square_root(float x) { return __builtin_sqrtf(x); }
-TAUT_INLINE double square_root(double x) { return __builtin_sqrt(x); }
-
-// Cholesky of the group's triangle in place, diagonal inverted. The column of a bad pivot, or -1.
-template <class T>
-TAUT_INLINE Int factor_triangle(T* triangle, double& bad_value) {
-  constexpr T largest = sizeof(T) == 4 ? T(__FLT_MAX__) : T(__DBL_MAX__);
-  Int bad = -1;
-#pragma GCC unroll 8
-  for (Int j = 0; j < group; ++j) {
-    T* column = triangle + j * slab_rows<T>;
-    const T pivot = column[j];
-    if (!(pivot > T(0) && pivot <= largest) && bad < 0) bad = j, bad_value = static_cast<double>(pivot);
-    column[j] = T(1) / square_root(pivot);
-#pragma GCC unroll 8
-    for (Int i = j + 1; i < group; ++i) column[i] *= column[j];
-#pragma GCC unroll 8
-    for (Int l = j + 1; l < group; ++l)
-#pragma GCC unroll 8
-      for (Int i = l; i < group; ++i) triangle[l * slab_rows<T> + i] -= column[i] * column[l];
-  }
-  return bad;
-}
 
 // Calls f.template operator()<First, Halves>() with the halves of a slab that hold its rows begin ... end-1.
 template <class T, class Function>
@@ -195,6 +164,21 @@ TAUT_INLINE void with_rows(Int begin, Int end, Function f) {
     f.template operator()<0, 1>();
   } else {
     f.template operator()<0, 2>();
+  }
+}
+
+// As many columns at once as the registers hold beside what they are subtracted from.
+template <class T>
+constexpr Int columns_at_once = block_vectors == 1 ? slab_rows<T> : group;
+
+// Calls f.template operator()<Count>() with how many of `columns`, a multiple of the group, are taken at once.
+template <class T, Int Count = columns_at_once<T>, class Function>
+TAUT_INLINE void with_count(Int columns, Function f) {
+  if constexpr (Count == group) {
+    f.template operator()<Count>();
+  } else {
+    if (columns >= Count) return f.template operator()<Count>();
+    with_count<T, Count - group>(columns, f);
   }
 }
 
@@ -224,43 +208,90 @@ void subtract_earlier_panels(const Panel<T>& panel, T* slab, Int before, Int beg
 template <class T>
 void solve_columns(const Panel<T>& panel, T* slab, Int begin, Int end) {
   constexpr Int r = slab_rows<T>;
-  for (Int c = begin; c < end; c += group) {
+  for (Int c = begin; c < end; c += columns_at_once<T>) {
     const T* pivot_rows = panel.slab(c / r) + c % r;
-    Block<T> block;
-    block.load_from(slab + c * r);
-    block.subtract_product(slab + begin * r, pivot_rows + begin * r, c - begin);
-    block.solve_triangle(pivot_rows + c * r);
-    block.store_to(slab + c * r);
+    with_count<T>(end - c, [&]<Int Count>() __attribute__((always_inline)) {
+      Block<T, 0, 2, Count> block;
+      block.load_from(slab + c * r);
+      block.subtract_product(slab + begin * r, pivot_rows + begin * r, c - begin);
+      block.solve_triangle(pivot_rows + c * r);
+      block.store_to(slab + c * r);
+    });
   }
 }
 
-// Columns begin ... end-1 of the diagonal block of slab b; the product starts at column `from`.
+// Lane `Lane` of a slab's column in all lanes.
+template <class T, Int Lane>
+TAUT_INLINE Vector<T> broadcast(const Vector<T>* column) {
+  return __builtin_shuffle(column[Lane / lanes<T>], Mask<T>{} + Lane % lanes<T>);
+}
+
+// 1 / sqrt of each.
 template <class T>
-BadPivot factor_columns(T* slab, Int from, Int begin, Int end) {
-  constexpr Int r = slab_rows<T>;
-  BadPivot bad;
-  for (Int c = begin; c < end && bad.column < 0; c += group) {
-    with_rows<T>(c % r, r, [&]<Int First, Int Halves>() {
-      T* pivot_rows = slab + c % r;
-      Block<T, First, Halves> block;
-      block.load_from(slab + c * r);
-      block.subtract_product(slab + from * r, pivot_rows + from * r, c - from);
-      block.clear_above(c % r);
-      block.store_to(slab + c * r);
-      T triangle[group * r];
-      for (Int j = 0; j < group; ++j)
-        for (Int i = j; i < group; ++i) triangle[j * r + i] = pivot_rows[(c + j) * r + i];
-      const Int column = factor_triangle(triangle, bad.value);
-      if (column >= 0) bad.column = c + column;
-      block.solve_triangle(triangle);
-      block.store_to(slab + c * r);
-      for (Int j = 0; j < group; ++j) {
-        for (Int i = 0; i < j; ++i) pivot_rows[(c + j) * r + i] = T(0);
-        pivot_rows[(c + j) * r + j] = triangle[j * r + j];
-      }
-    });
+TAUT_INLINE Vector<T> inverse_square_roots(Vector<T> v) {
+  Vector<T> roots;
+  for (Int i = 0; i < lanes<T>; ++i) {
+    if constexpr (sizeof(T) == 4) {
+      roots[i] = __builtin_sqrtf(v[i]);
+    } else {
+      roots[i] = __builtin_sqrt(v[i]);
+    }
   }
-  return bad;
+  return T(1) / roots;
+}
+
+// `Count` columns of the diagonal block, from its column `First` on, with all rows of the slab, in registers: the product over the columns
+// from `from` on, then L D Lᵀ, whose chain of operations from pivot to pivot is a quotient, a product and a subtraction long, and at the end
+// the square roots of all pivots at once.
+template <class T, Int First, Int Count>
+TAUT_INLINE void factor_in_registers(T* slab, Int from, Int diagonal, BadPivot& bad) {
+  constexpr Int r = slab_rows<T>;
+  constexpr auto all = std::make_index_sequence<Count>{};
+  T* first = slab + (diagonal + First) * r;
+  Block<T, 0, 2, Count> block;
+  block.load_from(first);
+  block.subtract_product(slab + from * r, slab + from * r + First, diagonal + First - from);
+  constexpr Int pivot_vectors = (Count + lanes<T> - 1) / lanes<T>;
+  Vector<T> pivots[pivot_vectors];
+  for (Int i = 0; i < pivot_vectors; ++i) pivots[i] = Vector<T>{} + T(1);
+  const auto eliminate_column = [&]<std::size_t J>() __attribute__((always_inline)) {
+    const Vector<T> pivot = broadcast<T, First + J>(block.v[J]), inverse = T(1) / pivot;
+    Vector<T>& its_own = pivots[J / lanes<T>];
+    its_own = lane_numbers<T>() == Int(J) % lanes<T> ? pivot : its_own;
+    const auto subtract_from = [&]<std::size_t K>() __attribute__((always_inline)) {
+      if constexpr (K > J) {
+        const Vector<T> factor = broadcast<T, First + K>(block.v[J]) * inverse;
+        for (Int i = 0; i < block_vectors; ++i) block.v[K][i] -= block.v[J][i] * factor;
+      }
+    };
+    [&]<std::size_t... K>(std::index_sequence<K...>) __attribute__((always_inline)) { (subtract_from.template operator()<K>(), ...); }(all);
+  };
+  [&]<std::size_t... J>(std::index_sequence<J...>) __attribute__((always_inline)) { (eliminate_column.template operator()<J>(), ...); }(all);
+  Vector<T> scales[pivot_vectors];
+  for (Int i = 0; i < pivot_vectors; ++i) scales[i] = inverse_square_roots<T>(pivots[i]);
+  const auto scale_column = [&]<std::size_t J>() __attribute__((always_inline)) {
+    const Vector<T> scale = broadcast<T, J>(scales);
+    for (Int i = 0; i < block_vectors; ++i) {
+      const Mask<T> below = lane_numbers<T>() - (First + Int(J) - i * lanes<T>);
+      block.v[J][i] = masked<T>(below == 0 ? scale : block.v[J][i] * scale, below >= 0);
+    }
+  };
+  [&]<std::size_t... J>(std::index_sequence<J...>) __attribute__((always_inline)) { (scale_column.template operator()<J>(), ...); }(all);
+  block.store_to(first);
+  constexpr T largest = sizeof(T) == 4 ? T(__FLT_MAX__) : T(__DBL_MAX__);
+  for (Int j = 0; j < Count && bad.column < 0; ++j)
+    if (const T pivot = pivots[j / lanes<T>][j % lanes<T>]; !(pivot > T(0) && pivot <= largest))
+      bad.column = diagonal + First + j, bad.value = static_cast<double>(pivot);
+}
+
+// The columns from `diagonal` to end-1, those of the slab's diagonal block; the product starts at column `from`.
+template <class T, Int First = 0>
+TAUT_INLINE void factor_columns(T* slab, Int from, Int diagonal, Int end, BadPivot& bad) {
+  with_count<T>(end - diagonal - First, [&]<Int Count>() __attribute__((always_inline)) {
+    factor_in_registers<T, First, Count>(slab, from, diagonal, bad);
+    if constexpr (First + Count < slab_rows<T> && Count == columns_at_once<T>)
+      if (bad.column < 0 && diagonal + First + Count < end) factor_columns<T, First + Count>(slab, from, diagonal, end, bad);
+  });
 }
 
 template <class T>
@@ -273,7 +304,8 @@ BadPivot eliminate(const FrontShape& shape, T* values, Int slab_begin, Int slab_
     if (begin > 0) subtract_earlier_panels(panel, slab, begin, begin, stop);
     solve_columns(panel, slab, begin, stop < diagonal ? stop : diagonal);
     if (stop > diagonal) {
-      const BadPivot bad = factor_columns<T>(slab, begin, diagonal, stop);
+      BadPivot bad;
+      factor_columns<T>(slab, begin, diagonal, stop, bad);
       if (bad.column >= 0) return bad;
     }
   }

@@ -94,27 +94,38 @@ TAUT_INLINE Mask<T> piece_mask(Int row, Int low, Int rows) {
   return (lane >= low) & (lane < rows - row);
 }
 
-// The group of columns first ... end-1.
+// Goes down a panel's slabs: no multiplication for the next.
+template <class T>
+struct SlabCursor {
+  const T* slab;
+  Int width, columns;  // of this slab, of the last ones
+
+  TAUT_INLINE SlabCursor(const FrontShape& shape, const T* panel, Int number)
+      : slab(panel + shape.panel_offset(number)), width(shape.panel_width(number)), columns(shape.columns) {}
+  TAUT_INLINE void next() {
+    slab += width * slab_rows<T>;
+    width = width + slab_rows<T> < columns ? width + slab_rows<T> : columns;
+  }
+};
+
+// The group of columns first ... end-1; the cursor is at the slab of its own rows.
 template <class T, Int Width>
-TAUT_INLINE void pack_group(const FrontShape& shape, const T* panel, Int first, Int end, T* to) {
+TAUT_INLINE void pack_group(SlabCursor<T> cursor, Int first, Int end, Int rows, T* to) {
   constexpr Int r = slab_rows<T>, l = lanes<T>;
-  const auto rows_from = [&](Int row) __attribute__((always_inline)) { return panel + shape.panel_offset(row / r) + first * r + row % r; };
-  prefetch_at(to, prefetch_distance<T>, Width * group);
-  const T* triangle = rows_from(end - group);
+  const T* triangle = cursor.slab + first * r + (end - group) % r;
 #pragma GCC unroll 8
-  for (Int j = 0; j < Width; ++j)
-    for (Int i = 0; i < group; ++i) to[j * group + i] = triangle[j * r + i];
+  for (Int j = 0; j < Width; ++j) __builtin_memcpy(to + j * group, triangle + j * r, group * sizeof(T));
   for_pieces<T, Width>(
-      end, shape.rows, to + Width * group,
+      end, rows, to + Width * group,
       [&](Int row, T * piece) __attribute__((always_inline)) {
-        prefetch_at(piece, prefetch_distance<T>, Width * l);
-        const T* from = rows_from(row);
+        if (row % r == 0) cursor.next();
+        const T* from = cursor.slab + first * r + row % r;
 #pragma GCC unroll 8
         for (Int j = 0; j < Width; ++j) store(piece + j * l, load(from + j * r));
       },
       [&](Int row, Int low, Int stride, T * piece) __attribute__((always_inline)) {
-        prefetch_at(piece, prefetch_distance<T>, Width * stride);
-        const T* from = rows_from(row) + low;
+        if (low == 0 && row % r == 0) cursor.next();
+        const T* from = cursor.slab + first * r + row % r + low;
         for (Int i = 0; i < stride; i += row_unit<T>)
 #pragma GCC unroll 8
           for (Int j = 0; j < Width; ++j) __builtin_memcpy(piece + j * stride + i, from + j * r + i, row_unit<T> * sizeof(T));
@@ -123,12 +134,22 @@ TAUT_INLINE void pack_group(const FrontShape& shape, const T* panel, Int first, 
 
 template <class T>
 void pack(const FrontShape& shape, const T* panel, T* packed, Int begin, Int end) {
+  constexpr Int r = slab_rows<T>;
+  if (begin >= end) return;
   T* to = packed + group_offset<T>(shape, begin + group);
+  const Int rows = shape.rows;
+  SlabCursor<T> cursor(shape, panel, begin / r);
   for (Int c = begin; c < end; c += group) {
-    const Int first = c == 0 ? shape.padding : c, width = c + group - first;
-    with_width(
-        width, [&]<Int Width>() __attribute__((always_inline)) { pack_group<T, Width>(shape, panel, first, c + group, to); });
-    to += group_size<T>(width, c + group, shape.rows);
+    if (c > begin && c % r == 0) cursor.next();
+    if (c == 0 && shape.padding > 0) {
+      const Int width = first_width<T>(shape);
+      with_width<group - 1>(
+          width, [&]<Int Width>() __attribute__((always_inline)) { pack_group<T, Width>(cursor, shape.padding, group, rows, to); });
+      to += group_size<T>(width, group, rows);
+    } else {
+      pack_group<T, group>(cursor, c, c + group, rows, to);
+      to += group_size<T>(group, c + group, rows);
+    }
   }
 }
 

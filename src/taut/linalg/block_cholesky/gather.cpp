@@ -12,6 +12,7 @@ namespace {
 
 constexpr Index rows_per_task = 512;
 constexpr Index rows_at_once = 8;                         // between visits: they stay in the first-level cache
+constexpr Index rows_ahead = 8;                           // for whose blocks the place is asked for
 constexpr Index prefetch_distance = 4096 / sizeof(double);  // ahead of which A's values are asked for
 
 // The first column of the block of two nodes in A's row of the first, or -1; for a matrix that has not the analysed pattern itself.
@@ -64,6 +65,15 @@ void NumericFactor<T>::gather_row(const FactorSource& source, Index k) {
   }
 }
 
+// Where a node's blocks will go: in the order of elimination, so anywhere.
+template <class T>
+TAUT_ALWAYS_INLINE void NumericFactor<T>::prefetch_gathered(Index k) const {
+  if (k < 0) return;
+  constexpr Offset line = 64 / sizeof(T);
+  const Offset end = layout_.gathered_start[k] + Offset{9} * (layout_.block_start[k + 1] - layout_.block_start[k]);
+  for (Offset at = layout_.gathered_start[k] / line * line; at < end; at += line) __builtin_prefetch(gathered_.data() + at, 1, 2);
+}
+
 template <class T>
 void NumericFactor<T>::gather(const FactorSource& source) {
   const BlockPattern& p = *source.a.pattern;
@@ -72,6 +82,7 @@ void NumericFactor<T>::gather(const FactorSource& source) {
     const Index k = layout_.place[i], width = p.width(i);
     const double* row = source.a.values.data() + p.value_start[i];
     for (Index l = 0; l < 3 * width; l += 8) __builtin_prefetch(row + prefetch_distance + l, 0, 2);
+    if (i + rows_ahead < p.rows()) prefetch_gathered(layout_.place[i + rows_ahead]);
     T* to = gathered_.data() + layout_.gathered_start[k];
     Index e = layout_.block_start[k];
     if (source.lumped) {

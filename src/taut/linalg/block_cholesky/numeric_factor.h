@@ -86,6 +86,7 @@ class NumericFactor {
   void take_dims(const FactorSource& source);
   void gather(const FactorSource& source);
   void gather_row(const FactorSource& source, Index k);
+  void prefetch_gathered(Index k) const;
   // scratch: the thread's
   void eliminate(Index s, bool shared, T* scratch);
   void assemble(const Front& front, T* panel) const;
