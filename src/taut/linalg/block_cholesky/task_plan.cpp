@@ -10,7 +10,7 @@ namespace {
 
 // Subtrees with less than all work / (threads x this) are one task: enough of them to balance the threads, few enough that their updates,
 // which get places of their own, stay small.
-constexpr double tasks_per_thread = 8.0;
+constexpr double tasks_per_thread = 12.0;
 // Work worth handing over to another thread (some 10 microseconds).
 constexpr double least_work = 5e5;
 
