@@ -10,6 +10,9 @@
 #include "taut/base/parallel.h"
 #include "taut/linalg/sparse_cholesky.h"
 #include "verbs.h"
+#ifdef TAUT_WITH_CHOLMOD
+#include "taut_cholmod/cholmod.h"
+#endif
 
 namespace taut::app {
 
@@ -33,11 +36,19 @@ Json table_rows(const BenchOptions& options) {
   return rows;
 }
 
+// Both sides get as many.
+void set_threads(int count) {
+  set_thread_count(count);
+#ifdef TAUT_WITH_CHOLMOD
+  set_cholmod_threads(count);
+#endif
+}
+
 int run_bench(const std::string& name, const BenchFunction& bench, const BenchArguments& arguments) {
   if (!make_cholesky("cholmod"))
     throw InputError("the benches compare with CHOLMOD, which is not built into this program; build with -DTAUT_WITH_CHOLMOD=ON");
   if (!arguments.plot.empty()) check_figure_file(arguments.plot);
-  set_thread_count(arguments.threads);
+  set_threads(arguments.threads);
   const MachineFacts machine = machine_facts(true);
   fmt::print("{}\n\n", to_line(machine));
   const Json report{{"bench", name}, {"machine", to_json(machine)}, {"rows", bench(arguments.options)}};
@@ -65,7 +76,7 @@ void add_roofline(CLI::App& parent, int& exit_code) {
   verb->add_option("--scenes", arguments->options.scenes, "Folder of the scene files (default: scenes)");
   verb->footer("Example: taut bench roofline --nodes 25921 --threads 2 --json out/roofline.json");
   verb->callback([=, &exit_code] {
-    set_thread_count(arguments->threads);
+    set_threads(arguments->threads);
     const MachineFacts machine = machine_facts(true);
     fmt::print("{}\n", to_line(machine));
     const nlohmann::ordered_json figures = bench_roofline(arguments->options, machine);
@@ -85,7 +96,7 @@ NewBench add_bench(CLI::App& parent, const char* name, const char* description, 
   verb->add_option("--json", arguments->json, "Write the figures to this file");
   verb->add_option("--plot", arguments->plot, "Draw them in this file (.svg or .png)");
   verb->add_option("--threads", arguments->threads,
-                   "Threads for Taut's own parts (default 1, as in the paper; CHOLMOD's BLAS always has one)")
+                   "Threads, also of CHOLMOD's BLAS and of PARDISO (default 1, as in the paper)")
       ->check(between(1, 1024));
   verb->add_option("--scenes", arguments->options.scenes, "Folder of the scene files (default: scenes)");
   verb->footer(fmt::format("Example: taut bench {0} --json out/{0}.json --plot out/{0}.png", name));

@@ -5,16 +5,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 namespace taut {
 
 namespace {
 
-// Whatever BLAS the system's alternatives give us, if it is OpenBLAS it is told to stay on one thread.
-void hold_blas_to_one_thread() {
+// Whatever BLAS the system's alternatives give us, if it is OpenBLAS it is told how many threads to use.
+std::atomic<int> blas_threads = 1;
+
+void tell_blas_its_threads() {
   using SetThreads = void (*)(int);
-  if (const auto set_threads = reinterpret_cast<SetThreads>(dlsym(RTLD_DEFAULT, "openblas_set_num_threads"))) set_threads(1);
+  if (const auto set_threads = reinterpret_cast<SetThreads>(dlsym(RTLD_DEFAULT, "openblas_set_num_threads"))) set_threads(blas_threads);
 }
 
 // CHOLMOD's supernodal loops ask OpenMP for four threads, however many processors there are, for loops of a few hundred numbers: on two
@@ -68,7 +71,7 @@ struct CholmodCholesky::Implementation {
     cholmod_start(&common);
     common.error_handler = nullptr;
     common.print = 0;
-    hold_blas_to_one_thread();
+    tell_blas_its_threads();
   }
   ~Implementation() {
     release_factor();
@@ -190,6 +193,11 @@ FactorStatistics CholmodCholesky::statistics() const {
 
 void register_cholmod() {
   register_cholesky("cholmod", [] { return std::make_unique<CholmodCholesky>(); });
+}
+
+void set_cholmod_threads(int count) {
+  blas_threads = count;
+  tell_blas_its_threads();
 }
 
 }  // namespace taut

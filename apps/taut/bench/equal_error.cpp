@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "bench/quiet.h"
 #include "taut/base/parallel.h"
 #include "taut/base/timer.h"
 #include "taut/solve/reference.h"
@@ -71,6 +72,7 @@ SolveSummary median_solve(ConstrainedSolver& solver, const LinearSystem& system,
   constexpr double short_ms = 100.0, long_ms = 1000.0;
   std::vector<SolveSummary> solves;
   const auto wanted = [&] { return solves.empty() || solves[0].total_ms() > long_ms ? 1u : solves[0].total_ms() > short_ms ? 3u : 5u; };
+  wait_for_quiet(*system.matrix);
   while (solves.size() < wanted()) solves.push_back(solver.solve(system, x));
   std::ranges::sort(solves, {}, &SolveSummary::total_ms);
   return solves[solves.size() / 2];

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "bench/median.h"
+#include "bench/quiet.h"
 #include "taut/base/error.h"
 #include "taut/base/timer.h"
 #include "taut/constraint/reduction.h"
@@ -122,6 +123,7 @@ class Campaign {
   void measure_method(Bench& bench, Stepper& stepper, double rho) {
     Cell& c = bench.cell;
     if (c.steps == 0 && keeps_analysis(c.method)) stepper.solve(simulation_.constraints(), simulation_.contact().impulses(), *bench.solver);
+    wait_for_quiet(stepper.matrix());
     const SolveSummary s = stepper.solve(simulation_.constraints(), simulation_.contact().impulses(), *bench.solver);
     const LinearSystem system = stepper.system();
     const auto x = flat(stepper.unknown());
@@ -199,6 +201,7 @@ class Campaign {
     if (needed < 0) return;
     const auto timed = make_solver(solver_options(method, 0.0, needed));
     if (keeps_analysis(method)) timed->solve(system, x);
+    wait_for_quiet(*system.matrix);
     const SolveSummary s = timed->solve(system, x);
     bench.equal_error_totals[step_] = s.total_ms();
     bench.cell.equal_error_ms += s.total_ms();

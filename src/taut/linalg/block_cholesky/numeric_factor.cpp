@@ -41,15 +41,21 @@ void NumericFactor<T>::plan() {
 template <class T>
 void NumericFactor<T>::take_dims(const FactorSource& source) {
   const NodeBasis& basis = source.basis;
+  const Index nodes = static_cast<Index>(dim_.size());
+  parallel_for(nodes, 2048, [&](Index begin, Index end) {
+    for (Index k = begin; k < end; ++k) {
+      const Index node = layout_.node[k];
+      dim_[k] = basis.dim.empty() ? source.a.pattern->dim(node) : basis.dim[node];
+      is_plain_[k] = dim_[k] == 3;
+      basis_of_[k] = -1;
+    }
+  });
   basis_.clear();
-  for (std::size_t k = 0; k < dim_.size(); ++k) {
-    const Index node = layout_.node[k];
-    dim_[k] = basis.dim.empty() ? source.a.pattern->dim(node) : basis.dim[node];
-    basis_of_[k] = -1;
-    is_plain_[k] = dim_[k] == 3;
-    if (basis.dim.empty() || dim_[k] == 3) continue;
+  if (basis.dim.empty()) return;
+  for (Index k = 0; k < nodes; ++k) {
+    if (is_plain_[k]) continue;
     basis_of_[k] = static_cast<Index>(basis_.size());
-    basis_.push_back(basis.frame[node]);
+    basis_.push_back(basis.frame[layout_.node[k]]);
   }
 }
 
