@@ -11,10 +11,10 @@ namespace {
 
 using Int = std::int32_t;
 
-// The registers of one block: R/lanes x G accumulators, R/lanes for a column of the first operand, one for the broadcast second operand. A
-// block of the update may be `wide` columns wide. Eight accumulators hide the latency of two multiply-adds a cycle; larger blocks would
-// only pad fronts more, most of which are small. Where only half of a slab's rows are wanted, a block has half a slab's: with AVX-512
-// that is a narrower register, of which many processors take two at once.
+// The registers of one block of the update: R/lanes x G accumulators, R/lanes for a column of the first operand, one for the broadcast second
+// operand. A block may be `wide` columns wide: eight accumulators hide the latency of two multiply-adds a cycle, larger blocks would only pad
+// fronts more, most of which are small. Where only half of a slab's rows are wanted, a block has half a slab's: with AVX-512 that is a narrower
+// register, of which many processors take two at once. The elimination takes columns_at_once columns, to keep from storing what it needs next.
 #if defined(__AVX512F__)
 constexpr Int register_bytes = 64, block_vectors = 1, group = 4, wide = 8;
 #else
