@@ -1,19 +1,18 @@
 #include "bench/quiet.h"
 
-#include <chrono>
-#include <thread>
 #include <vector>
 
 #include "taut/base/parallel.h"
+#include "taut/base/timer.h"
 
 namespace taut::app {
 
 void wait_for_quiet(const BlockCsr& a) {
+  constexpr double milliseconds = 40.0;
   if (thread_count() == 1) return;
-  std::this_thread::sleep_for(std::chrono::milliseconds(40));
   const std::vector<double> x(static_cast<std::size_t>(a.dofs()), 1.0);
   std::vector<double> y(x.size());
-  multiply(a, x, y);
+  for (const Timer timer; timer.milliseconds() < milliseconds;) multiply(a, x, y);
 }
 
 }  // namespace taut::app

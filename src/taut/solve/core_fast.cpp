@@ -266,7 +266,7 @@ void CoreFast::run(const LinearSystem& system, std::span<double> x, SolveSummary
   if (lumped_ && from_rest && energy_ > 0.0) summary.error_bound = result.stop_value * std::sqrt(delta0_ / energy_);
   summary.factor_nonzeros = factor_.statistics().nonzeros;
   summary.factor_flops = factor_.statistics().flops;
-  summary.left_out_nonzeros = static_cast<double>(remainder_.nonzeros());
+  if (pattern_->uniform_dim == 3) summary.left_out_nonzeros = static_cast<double>(remainder_.nonzeros());
   summary.memory_bytes = factor_.statistics().bytes + static_cast<double>(remainder_.bytes()) + 5.0 * sizeof(double) * static_cast<double>(x.size());
 }
 
