@@ -55,8 +55,9 @@ TEST(AutoScene, SolvesEveryRegime) {
           const Status status = simulation.step(record);
           ASSERT_TRUE(status.ok()) << status.message;
           EXPECT_LT(error, 10.0 * tolerance) << record.solver << ", step " << step;
-          // The residual's own norm can be larger than the error's by sqrt(cond(A)), and is where rounded springs pull across.
-          const double most_residual = tolerance * std::max(100.0, std::sqrt(solved_stiffness));
+          // The residual's own norm can be larger than the error's by sqrt(cond(A)), and is where rounded springs pull across: a twentieth of that
+          // is seen.
+          const double most_residual = tolerance * std::max(100.0, 0.1 * std::sqrt(solved_stiffness));
           EXPECT_LT(record.relative_residual, most_residual) << record.solver << ", step " << step;
           if (record.solver.starts_with("core") && (record.contact_passes == 1 || record.bound_iterations >= 0)) {
             EXPECT_LE(record.iterations, record.bound_iterations);

@@ -49,7 +49,7 @@ class Phases {
     const Offset off_diagonal = (a.pattern->blocks() - a.rows()) / 2;
     const State state = simulation_.state();
     Stepper other(simulation_.cloth().nodes(), simulation_.cloth().force_models(), simulation_.cloth().external(), simulation_.scene().time.integrator, {});
-    add("assembly", flops_per_spring_block * static_cast<double>(off_diagonal), 4.0 * values + 6.0 * 8.0 * static_cast<double>(n), "single",
+    add("assembly", flops_per_spring_block * static_cast<double>(off_diagonal), 8.0 * values + 6.0 * 8.0 * static_cast<double>(n), "double",
         median_ms([&] { other.begin(state, simulation_.scene().time.step); }));
     add("product", 2.0 * values, static_cast<double>(multiply_bytes(a)), "double", median_ms([&] { multiply(a, x, y); }));
     Reduction reduction;

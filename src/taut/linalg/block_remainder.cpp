@@ -4,6 +4,7 @@
 
 #include "taut/base/parallel.h"
 #include "taut/base/simd.h"
+#include "taut/linalg/small_block.h"
 
 namespace taut {
 
@@ -15,11 +16,6 @@ constexpr Index overread = 3;  // entries behind a block's last row that a load 
 using Four = double __attribute__((vector_size(32), aligned(8), may_alias));
 using FourSingle = float __attribute__((vector_size(16), aligned(4), may_alias));
 
-TAUT_ALWAYS_INLINE Four widened(const float* p) {
-  typedef double Wide __attribute__((vector_size(32)));
-  return __builtin_convertvector(*reinterpret_cast<const FourSingle*>(p), Wide);
-}
-
 using Place = BlockRemainder::Place;
 
 // E's row of a node times c: lane by lane, summed at the end.
@@ -29,7 +25,7 @@ TAUT_ALWAYS_INLINE void row_product(const Place* begin, const Place* end, const 
   for (const Place* place = begin; place < end; ++place, block += 9) {
     const double* from = c + place->column_dof;
     const Four x = Four{from[0], from[1], from[2], 0.0} - mine;
-    for (Index r = 0; r < 3; ++r) sum[r] += widened(block + 3 * r) * x;
+    for (Index r = 0; r < 3; ++r) sum[r] += __builtin_convertvector(*reinterpret_cast<const FourSingle*>(block + 3 * r), Four) * x;
   }
   for (Index r = 0; r < 3; ++r) product[r] = (sum[r][0] + sum[r][2]) + sum[r][1];
 }
@@ -47,14 +43,6 @@ TAUT_MULTIVERSION double advance_rows(const Index* row_start, const Place* place
     }
   }
   return energy;
-}
-
-// Reads and writes four numbers for each three: what is too much is written over by the next, and behind the block nothing is.
-TAUT_ALWAYS_INLINE void copy_block(const double* from, Index width, float* to) {
-  for (Index r = 0; r < 2; ++r)
-    *reinterpret_cast<FourSingle*>(to + 3 * r) =
-        __builtin_convertvector(*reinterpret_cast<const Four*>(from + r * width), FourSingle);
-  for (Index c = 0; c < 3; ++c) to[6 + c] = static_cast<float>(from[2 * width + c]);
 }
 
 }  // namespace
@@ -83,7 +71,7 @@ void BlockRemainder::update_rows(const BlockCsr& a, Index begin, Index end) {
   for (Index i = begin; i < end; ++i) {
     const double* row = a.values.data() + p.value_start[i];
     const Index width = p.width(i);
-    for (Index k = row_start_[i]; k < row_start_[i + 1]; ++k) copy_block(row + place_[k].in_row, width, values_.data() + Offset{9} * k);
+    for (Index k = row_start_[i]; k < row_start_[i + 1]; ++k) copy_block_3(row + place_[k].in_row, width, values_.data() + Offset{9} * k);
   }
 }
 

@@ -11,7 +11,7 @@
 //
 // p is as exact as P⁻¹ was applied: in single precision that leaves a rounding error which only a residual from A itself removes. So the
 // blocks are kept in single precision too, which adds less than that: their relative error u acts on differences, |δ(E c)| in the norm of M⁻¹
-// is at most some u sqrt(ρ) |c|_E. Sums are in double precision.
+// is at most some u sqrt(ρ Σ_ij |A_ij| |c_j - c_i|²), next to nothing where c is smooth. Sums are in double precision.
 //
 // 3x3 blocks. With constraints (linalg/node_basis.h), p and q hold something in constrained directions that nobody reads.
 

@@ -5,6 +5,7 @@
 #include "taut/base/parallel.h"
 #include "taut/base/simd.h"
 #include "taut/linalg/block_cholesky/numeric_factor.h"
+#include "taut/linalg/small_block.h"
 
 namespace taut {
 
@@ -22,15 +23,6 @@ Index find_block(const BlockPattern& p, Index node, Index other) {
 }
 
 typedef double Doubles __attribute__((vector_size(32), aligned(8), may_alias));
-
-// A 3x3 block, rounded to T. Reads and writes four numbers where there are as many.
-template <class T>
-TAUT_ALWAYS_INLINE void copy_block_3(const double* from, Index width, T* to) {
-  typedef T Four __attribute__((vector_size(4 * sizeof(T)), aligned(sizeof(T)), may_alias));
-  for (Index j = 0; j < 2; ++j)
-    *reinterpret_cast<Four*>(to + 3 * j) = __builtin_convertvector(*reinterpret_cast<const Doubles*>(from + j * width), Four);
-  for (Index i = 0; i < 3; ++i) to[6 + i] = static_cast<T>(from[2 * width + i]);
-}
 
 // The sum of 3x3 blocks of a row, the first of which begins at column `first`. Reads one number behind the row.
 template <class T>
