@@ -4,7 +4,8 @@
 
 #include <limits>
 
-#include "linalg/random_matrix.h"
+#include "linalg/spring_grid.h"
+#include "taut/base/parallel.h"
 #include "taut/linalg/block_cholesky.h"
 
 namespace taut::test {
@@ -168,7 +169,7 @@ TEST_P(BlockFactorBasis, WithoutTheSpringsOutside) {
       const Eigen::MatrixXd q = held ? c.basis.dense() : Eigen::MatrixXd::Identity(3 * nodes, 3 * nodes);
       const Eigen::VectorXd expected = q * (q.transpose() * dense(inside) * q).llt().solve(q.transpose() * as_eigen(b));
       std::vector<int> seen(static_cast<std::size_t>(nodes), 0);
-      const BlocksOutside outside{true, [&](Index begin, Index end) {
+      const BlocksOutside outside{true, false, [&](Index begin, Index end) {
                                     for (Index i = begin; i < end; ++i) ++seen[i];
                                   }};
       std::vector<double> x(b.size());
@@ -178,6 +179,48 @@ TEST_P(BlockFactorBasis, WithoutTheSpringsOutside) {
       EXPECT_EQ(std::ranges::count(seen, 1), nodes) << "each row is to be seen once";
     }
   }
+}
+
+// Parallelograms in the place of some of them, in A's last row too; on and off in turn.
+TEST_P(BlockFactorBasis, WithParallelogramsForSpringsOutside) {
+  Random random(6);
+  for (const Index side : {5, 6, 12}) {
+    const SpringGrid grid(random, side, side + 1);
+    const Index nodes = grid.a.rows();
+    const Basis basis = random_basis(random, nodes);
+    ASSERT_TRUE(cholesky_.analyze(grid.a.pattern, grid.sides, BlocksLeftOut::without_place).ok());
+    const auto list = cholesky_.parallelograms();
+    ASSERT_GT(static_cast<Index>(list.size()), nodes / 10);
+    const std::vector<double> b = random.vector(grid.a.dofs());
+    for (const bool held : {false, true})
+      for (const bool replaced : {true, false, true}) {
+        const Eigen::MatrixXd q = held ? basis.dense() : Eigen::MatrixXd::Identity(3 * nodes, 3 * nodes);
+        const Eigen::MatrixXd p = grid.without(cholesky_.analyzed_blocks(), replaced ? list : std::span<const Parallelogram>());
+        const Eigen::VectorXd expected = q * (q.transpose() * p * q).llt().solve(q.transpose() * as_eigen(b));
+        std::vector<double> x(b.size());
+        ASSERT_TRUE(cholesky_.factorize(grid.a, held ? basis.view() : NodeBasis{}, b, nullptr, {true, replaced, {}}).ok());
+        cholesky_.solve_backward(0.0, x);
+        EXPECT_LT(relative_difference(x, expected), tolerance()) << nodes << (held ? ", held" : "") << (replaced ? ", replaced" : "");
+      }
+  }
+}
+
+TEST_P(BlockFactorBasis, ParallelogramsGiveTheSameBitsForAnyNumberOfThreads) {
+  Random random(7);
+  const SpringGrid grid(random, 45, 40);
+  const std::vector<double> b = random.vector(grid.a.dofs());
+  ASSERT_TRUE(cholesky_.analyze(grid.a.pattern, grid.sides, BlocksLeftOut::without_place).ok());
+  ASSERT_FALSE(cholesky_.parallelograms().empty());
+  const int usual = thread_count();
+  std::vector<double> x(b.size()), first;
+  for (const int threads : {1, 2, 4}) {
+    set_thread_count(threads);
+    ASSERT_TRUE(cholesky_.factorize(grid.a, {}, b, nullptr, {true, true, {}}).ok());
+    cholesky_.solve_backward(0.0, x);
+    if (first.empty()) first = x;
+    EXPECT_EQ(x, first) << threads << " threads";
+  }
+  set_thread_count(usual);
 }
 
 TEST_P(BlockFactorBasis, WithoutBasisAndMask) {

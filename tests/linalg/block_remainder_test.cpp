@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "linalg/random_matrix.h"
+#include "linalg/spring_grid.h"
 #include "taut/base/parallel.h"
 
 namespace taut::test {
@@ -63,6 +63,60 @@ TEST(BlockRemainder, GivesTheProductOfADirection) {
   }
 }
 
+// E = A - P for the springs left out and for those replaced, in turn: its product, and the ratios that bound it.
+TEST(BlockRemainder, KnowsWhatParallelogramsLeave) {
+  Random random(34);
+  SpringGrid grid(random, 9, 7);
+  const BlockPattern& pattern = *grid.a.pattern;
+  std::vector<std::uint8_t> kept = grid.sides;
+  for (Index i = 0; i < pattern.rows(); ++i)
+    for (Index k = pattern.row_start[i]; k < pattern.row_start[i + 1]; ++k)
+      if (const Index j = pattern.column[k]; std::abs(i - j) == grid.nu + 1 && random.uniform() < 0.5) kept[k] = kept[pattern.find(j, i)] = 1;
+  const std::vector<Parallelogram> list = parallelograms(pattern, grid.sides, kept);
+  ASSERT_GT(list.size(), 10u);
+  ASSERT_LT(list.size(), 48u);
+  BlockRemainder remainder;
+  remainder.analyze(grid.a.pattern, kept, list);
+  remainder.update(grid.a);
+  std::vector<double> masses;
+  for (Index i = 0; i < pattern.rows(); ++i) masses.push_back(random.uniform(0.5, 2.0));
+  const Eigen::MatrixXd a = dense(grid.a);
+  for (const bool replaced : {false, true, false}) {
+    remainder.set_replaced(replaced);
+    const Eigen::MatrixXd p = grid.without(kept, replaced ? std::span<const Parallelogram>(list) : std::span<const Parallelogram>());
+    const std::vector<double> c = random.vector(grid.a.dofs()), r = random.vector(grid.a.dofs());
+    std::vector<double> last = random.vector(grid.a.dofs()), q(c.size());
+    const Eigen::VectorXd expected = as_eigen(r) + 0.3 * as_eigen(last), e = (a - p) * as_eigen(c);
+    const double energy = remainder.advance(0.3, r, c, last, q);
+    EXPECT_LT((as_eigen(last) - expected).norm(), 1e-13 * expected.norm());
+    EXPECT_LT((as_eigen(q) - expected - e).norm(), 0x1p-22 * e.norm()) << replaced;
+    EXPECT_NEAR(energy, as_eigen(c).dot(as_eigen(q)), 1e-12 * std::abs(energy));
+    remainder.subtract(c, q);
+    EXPECT_LT((as_eigen(q) - expected).norm(), 1e-12 * expected.norm());
+
+    std::vector<Mat3> at_corner(masses.size(), Mat3::Zero()), dropped(masses.size(), Mat3::Zero());
+    for (Index i = 0; i < pattern.rows(); ++i)
+      for (Index k = pattern.row_start[i]; k < pattern.row_start[i + 1]; ++k)
+        if (!kept[k]) dropped[i] -= a.block<3, 3>(3 * i, 3 * pattern.column[k]);
+    for (const Parallelogram& of : list) {
+      if (!replaced) continue;
+      const Mat3 b = -a.block<3, 3>(3 * of.a, 3 * of.c);
+      for (const Index i : {of.a, of.b, of.c, of.d}) at_corner[i] += b;
+      dropped[of.a] -= b, dropped[of.c] -= b;
+    }
+    BlockRemainder::Ratios largest;
+    for (std::size_t i = 0; i < masses.size(); ++i) {
+      largest.dropped = std::max(largest.dropped, dropped[i].norm() / masses[i]);
+      largest.replaced = std::max(largest.replaced, at_corner[i].norm() / masses[i]);
+    }
+    const BlockRemainder::Ratios ratios = remainder.ratios(masses);
+    EXPECT_GE(ratios.dropped, largest.dropped);
+    EXPECT_GE(ratios.replaced, largest.replaced);
+    EXPECT_NEAR(ratios.dropped, largest.dropped, 1e-5 * largest.dropped);
+    EXPECT_NEAR(ratios.replaced, largest.replaced, 1e-5 * largest.replaced);
+  }
+}
+
 // What lumping is for: a translation is not in E's way at all, whatever its rounding.
 TEST(BlockRemainder, LeavesTranslationsAlone) {
   Random random(33);
@@ -80,9 +134,13 @@ TEST(BlockRemainder, LeavesTranslationsAlone) {
 
 TEST(BlockRemainder, DeterministicForAnyNumberOfThreads) {
   Random random(32);
-  Split s(random, std::vector<Index>(3000, 3), 0.5);
+  const SpringGrid s(random, 60, 50);
+  std::vector<std::uint8_t> kept = s.sides;
+  for (Index i = 0; i + s.nu + 1 < s.a.rows(); ++i)
+    if (const Index k = s.a.pattern->find(i, i + s.nu + 1); k >= 0) kept[k] = kept[s.a.pattern->find(i + s.nu + 1, i)] = 1;
   BlockRemainder remainder;
-  remainder.analyze(s.a.pattern, s.mask);
+  remainder.analyze(s.a.pattern, kept, parallelograms(*s.a.pattern, s.sides, kept));
+  remainder.set_replaced(true);
   const std::vector<double> r = random.vector(s.a.dofs()), c = random.vector(s.a.dofs()), start = random.vector(s.a.dofs());
   const int usual = thread_count();
   std::vector<double> expected;

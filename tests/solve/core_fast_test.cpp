@@ -5,6 +5,7 @@
 #include "solve/constrained_case.h"
 #include "solve/material_sheet.h"
 #include "taut/linalg/block_cholesky.h"
+#include "taut/linalg/block_remainder.h"
 #include "taut/solve/core_bound.h"
 #include "taut/solve/reference.h"
 
@@ -51,27 +52,57 @@ TEST(CoreFast, TakesTheStepsOfCorePcg) {
   EXPECT_GT(smaller_than_all, 5);
 }
 
-// Where ρ is known the springs outside the core are taken out of it altogether: the same conjugate gradients as on a dense matrix of the
-// core's springs alone; and the error is proved.
-TEST(CoreFast, TakesTheStepsOfTheSpringsInTheCore) {
+// A motion that is affine over the sheet: as smooth as can be.
+std::vector<double> affine_motion(const MaterialSheet& sheet) {
+  std::vector<double> x;
+  for (Index i = 0; i < sheet.a.rows(); ++i) {
+    const double u = i % sheet.material.nodes, v = i / sheet.material.nodes;
+    x.insert(x.end(), {0.3 * u - 0.2 * v + 1.0, 0.4 * v, 0.1 * u + 0.5 * v});
+  }
+  return x;
+}
+
+// P: without the blocks outside the core, lumped, and with springs for the parallelograms.
+Eigen::MatrixXd dense_core(const MaterialSheet& sheet, std::span<const std::uint8_t> core, std::span<const Parallelogram> replaced) {
+  const BlockPattern& pattern = *sheet.a.pattern;
+  const Eigen::MatrixXd a = dense(sheet.a);
+  Eigen::MatrixXd p = a;
+  const auto spring = [&](Index i, Index j, const Mat3& b) {
+    p.block<3, 3>(3 * i, 3 * i) += b, p.block<3, 3>(3 * j, 3 * j) += b, p.block<3, 3>(3 * i, 3 * j) -= b, p.block<3, 3>(3 * j, 3 * i) -= b;
+  };
+  for (Index i = 0; i < pattern.rows(); ++i)
+    for (Index k = pattern.row_start[i]; k < pattern.row_start[i + 1]; ++k)
+      if (const Index j = pattern.column[k]; j > i && !core[k]) spring(i, j, a.block<3, 3>(3 * i, 3 * j));
+  for (const Parallelogram& of : replaced) {
+    const Mat3 b = -a.block<3, 3>(3 * of.a, 3 * of.c);
+    spring(of.a, of.b, b), spring(of.b, of.c, b), spring(of.c, of.d, b), spring(of.d, of.a, b), spring(of.b, of.d, -b);
+  }
+  return p;
+}
+
+// Where ρ is known the springs outside the core are taken out of it altogether, or parallelograms stand in for them: the same conjugate
+// gradients as on a dense matrix made so; its eigenvalues within their bounds.
+class CoreFastSteps : public testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(Replaced, CoreFastSteps, testing::Bool());
+TEST_P(CoreFastSteps, AreThoseOfTheSpringsInTheCore) {
   std::uint32_t seed = 20;
+  double smallest = 1.0;
   for (const double k_stretch : {60.0, 6e3, 6e5})
     for (const double k_shear : {0.3, 30.0, 600.0}) {
       MaterialSheet sheet({.k_stretch = k_stretch, .k_shear = k_shear, .k_bend = k_shear / 10, .h = 10e-3, .nodes = 9}, ++seed);
       sheet.hold_some();
       SCOPED_TRACE(sheet.material.describe());
       sheet.core = sheet.stretch;
-      const LinearSystem system = sheet.with_core(sheet.stretch);
-      const std::vector<std::uint8_t> core = core_with_fill(sheet);
-      const BlockPattern& pattern = *sheet.a.pattern;
-      Eigen::MatrixXd p = dense(sheet.a);
-      for (Index i = 0; i < pattern.rows(); ++i)
-        for (Index k = pattern.row_start[i]; k < pattern.row_start[i + 1]; ++k) {
-          const Index j = pattern.column[k];
-          if (core[k] || j == i) continue;
-          p.block<3, 3>(3 * i, 3 * i) += p.block<3, 3>(3 * i, 3 * j);
-          p.block<3, 3>(3 * i, 3 * j).setZero();
-        }
+      LinearSystem system = sheet.with_core(sheet.stretch);
+      const std::vector<double> smooth = affine_motion(sheet);
+      system.masses = sheet.masses;
+      if (GetParam()) system.last = smooth;
+      BlockCholesky same_core(CholeskyPrecision::single_precision);
+      ASSERT_TRUE(same_core.analyze(sheet.a.pattern, sheet.stretch, BlocksLeftOut::without_place).ok());
+      const auto parallelograms = same_core.parallelograms();
+      ASSERT_FALSE(parallelograms.empty());
+      const Eigen::MatrixXd p =
+          dense_core(sheet, same_core.analyzed_blocks(), GetParam() ? parallelograms : std::span<const Parallelogram>());
       const Eigen::MatrixXd u = sheet.dense_u(), a = u.transpose() * dense(sheet.a) * u;
       const Eigen::LLT<Eigen::MatrixXd> factor(u.transpose() * p * u);
       ASSERT_EQ(factor.info(), Eigen::Success);
@@ -92,7 +123,50 @@ TEST(CoreFast, TakesTheStepsOfTheSpringsInTheCore) {
       ASSERT_TRUE(summary.status.ok()) << summary.status.message;
       ASSERT_GE(seen.size(), stops.size());
       for (std::size_t k = 0; k < stops.size(); ++k) EXPECT_NEAR(seen[k], stops[k], 0.05 * stops[k] + 1e-6) << k;
+
+      EXPECT_EQ(summary.replaced, GetParam());
+      BlockRemainder remainder;
+      remainder.analyze(sheet.a.pattern, same_core.analyzed_blocks(), parallelograms);
+      remainder.set_replaced(GetParam());
+      remainder.update(sheet.a);
+      const BlockRemainder::Ratios ratios = remainder.ratios(sheet.masses);
+      const Eigen::VectorXd eigenvalues = Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd>(a, u.transpose() * p * u).eigenvalues();
+      EXPECT_GE(eigenvalues.minCoeff() * (1.0 + 4.0 * ratios.replaced), 1.0 - 1e-6);
+      EXPECT_LE(eigenvalues.maxCoeff(), 1.0 + 2.0 * ratios.dropped + 1e-6);
+      EXPECT_LE(summary.iterations, summary.bound_iterations);
+      smallest = std::min(smallest, eigenvalues.minCoeff());
     }
+  EXPECT_EQ(smallest < 0.5, GetParam()) << smallest;
+}
+
+// Parallelograms are better for what is smooth: it goes by last step's x. Without it, or the masses that the bound is made with, never.
+TEST(CoreFast, ReplacesSpringsWhereMotionIsSmooth) {
+  MaterialSheet sheet({.k_stretch = 60.0, .k_shear = 30.0, .motion = 0.0}, 5);
+  sheet.hold_some();
+  const std::vector<double> smooth = affine_motion(sheet);
+  std::vector<double> rough = smooth, x(sheet.b.size());
+  Random random(6);
+  for (double& value : rough) value += random.uniform();
+  LinearSystem system = sheet.with_core(sheet.stretch);
+  // What it is to find is smooth.
+  multiply(sheet.a, smooth, sheet.b);
+  const auto solver = make_solver(solver_options("core_fast", 1e-6));
+  const auto solve = [&](std::span<const double> last, std::span<const double> masses) {
+    system.last = last, system.masses = masses;
+    const SolveSummary summary = solver->solve(system, x);
+    EXPECT_TRUE(summary.status.ok()) << summary.status.message;
+    EXPECT_LE(anorm_error(system, x, reference_solution(system)), 1.01 * summary.error_bound);
+    EXPECT_LE(summary.iterations, summary.bound_iterations);
+    return summary;
+  };
+  const SolveSummary dropped = solve({}, sheet.masses);
+  EXPECT_FALSE(dropped.replaced);
+  const SolveSummary replaced = solve(smooth, sheet.masses);
+  EXPECT_TRUE(replaced.replaced);
+  EXPECT_LT(replaced.iterations, dropped.iterations);
+  EXPECT_FALSE(solve(rough, sheet.masses).replaced);
+  EXPECT_FALSE(solve(smooth, {}).replaced);
+  EXPECT_TRUE(solve(smooth, sheet.masses).replaced);
 }
 
 TEST(CoreFast, ProvesItsError) {
@@ -105,16 +179,21 @@ TEST(CoreFast, ProvesItsError) {
         SCOPED_TRACE(sheet.material.describe());
         const std::vector<std::uint8_t>& core = seed % 3 == 0 ? sheet.unbent : sheet.stretch;
         std::vector<double> x(sheet.b.size());
-        const LinearSystem system = sheet.with_core(core);
-        const SolveSummary summary = sheet.solve("core_fast", core, 1e-3);
+        const std::vector<double> smooth = affine_motion(sheet);
+        LinearSystem system = sheet.with_core(core);
+        system.masses = sheet.masses;
         const auto solver = make_solver(solver_options("core_fast", 1e-3));
-        const SolveSummary same = solver->solve(system, x);
-        ASSERT_TRUE(summary.status.ok()) << summary.status.message;
-        EXPECT_EQ(summary.iterations, same.iterations);
-        const double error = anorm_error(system, x, reference_solution(system));
-        EXPECT_LE(error, same.error_bound * 1.01 + 1e-5);
-        EXPECT_LE(same.error_bound, std::sqrt(1.0 + 2.0 * system.rho) * 1.01 * same.stop_value + 1e-5);
-        EXPECT_LE(same.iterations, same.bound_iterations);
+        for (const bool replaced : {false, true}) {
+          if (replaced) system.last = smooth;
+          const SolveSummary summary = solver->solve(system, x);
+          ASSERT_TRUE(summary.status.ok()) << summary.status.message;
+          EXPECT_EQ(summary.replaced, replaced && &core == &sheet.stretch);
+          EXPECT_LE(anorm_error(system, x, reference_solution(system)), summary.error_bound * 1.01 + 1e-5);
+          if (!summary.replaced) {
+            EXPECT_LE(summary.error_bound, std::sqrt(1.0 + 2.0 * system.rho) * 1.01 * summary.stop_value + 1e-5);
+          }
+          EXPECT_LE(summary.iterations, summary.bound_iterations);
+        }
       }
 }
 

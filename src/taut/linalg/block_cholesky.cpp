@@ -24,6 +24,7 @@ struct BlockCholesky::Implementation {
   std::shared_ptr<const BlockPattern> analyzed;  // null if the analysis was given no owner
   std::vector<std::uint8_t> analyzed_blocks;     // of that pattern
   UnanalyzedBlocks unanalyzed;                   // the others
+  std::vector<Parallelogram> parallelograms;     // that can stand in for some of them
   // Of the matrix last factorised:
   std::shared_ptr<const BlockPattern> pattern;
   double scale = 1.0;                 // of the last forward solve
@@ -107,7 +108,12 @@ struct BlockCholesky::Implementation {
     if (pattern != a.pattern) number_unknowns(*a.pattern);
     pattern = a.pattern;
     assert(!outside.lumped || a.pattern->uniform_dim == 3);
-    return factorize({a, basis, true, outside.lumped ? &unanalyzed : nullptr, outside.visit ? &outside.visit : nullptr}, loads);
+    assert(outside.lumped || !outside.replaced);
+    FactorSource source{a, basis, true};
+    if (outside.lumped) source.lumped = &unanalyzed;
+    if (outside.replaced) source.replaced = parallelograms;
+    if (outside.visit) source.visit = &outside.visit;
+    return factorize(source, loads);
   }
 
   void take_blocks(const BlockPattern& p, std::span<const std::uint8_t> mask, BlocksLeftOut left_out) {
@@ -131,6 +137,8 @@ struct BlockCholesky::Implementation {
       tree = make_supernode_tree(graph.graph, elimination_order(graph.graph, graph.weight), graph.weight);
       take_blocks(p, mask, left_out);
       unanalyzed = unanalyzed_blocks(p, analyzed_blocks);
+      parallelograms.clear();
+      if (!mask.empty() && p.uniform_dim == 3) parallelograms = taut::parallelograms(p, mask, analyzed_blocks);
       make_factor(precision != CholeskyPrecision::double_precision);
     } catch (const std::bad_alloc&) {
       return {Outcome::out_of_memory, "Cholesky (block), analysis: not enough memory"};
@@ -180,6 +188,8 @@ Status BlockCholesky::analyze(std::shared_ptr<const BlockPattern> pattern, std::
 }
 
 std::span<const std::uint8_t> BlockCholesky::analyzed_blocks() const { return implementation_->analyzed_blocks; }
+
+std::span<const Parallelogram> BlockCholesky::parallelograms() const { return implementation_->parallelograms; }
 
 Status BlockCholesky::factorize(const BlockCsr& a) {
   Implementation& me = *implementation_;

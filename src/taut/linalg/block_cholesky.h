@@ -32,6 +32,7 @@
 // Karypis & Kumar 1998 (METIS).
 
 #include "taut/linalg/node_basis.h"
+#include "taut/linalg/parallelogram.h"
 #include "taut/linalg/sparse_cholesky.h"
 
 namespace taut {
@@ -44,6 +45,9 @@ struct BlocksOutside {
   // Each is added to the diagonal block of its row, so that block rows sum to what A's do: that takes the springs out that made them, where
   // else their part of the diagonal would stay. For symmetric 3x3 blocks.
   bool lumped = false;
+  // With lumped: those that BlockCholesky::parallelograms() has are replaced after that, by B = -A_ac on the sides and -B on the other
+  // diagonal.
+  bool replaced = false;
   RowsVisitor visit = {};  // sees all rows of A, once
 };
 
@@ -76,6 +80,8 @@ class BlockCholesky : public SparseCholesky {
                  BlocksLeftOut left_out = BlocksLeftOut::all_outside_mask);
   // Of that analysis: one byte per block of the pattern, 1 for those that are factorised.
   std::span<const std::uint8_t> analyzed_blocks() const;
+  // Of that analysis, of 3x3 blocks: what can stand in for blocks that are left out; sides are blocks of the mask.
+  std::span<const Parallelogram> parallelograms() const;
   Status factorize(const BlockCsr& a) override;
   // The analysed blocks of Qᵀ A Q; A must have the analysed pattern (asserted). `basis` is not kept. b, if not empty: solve_forward(b) at
   // once, whose result goes to *b_norm2.

@@ -1,6 +1,10 @@
 #include "taut/linalg/block_remainder.h"
 
+#include <algorithm>
+#include <array>
 #include <cassert>
+#include <cmath>
+#include <cstdlib>
 
 #include "taut/base/parallel.h"
 #include "taut/base/simd.h"
@@ -17,25 +21,53 @@ using Four = double __attribute__((vector_size(32), aligned(8), may_alias));
 using FourSingle = float __attribute__((vector_size(16), aligned(4), may_alias));
 
 using Place = BlockRemainder::Place;
+using Corner = BlockRemainder::Corner;
 
-// E's row of a node times c: lane by lane, summed at the end.
-TAUT_ALWAYS_INLINE void row_product(const Place* begin, const Place* end, const float* block, const double* c, const double* own, double* product) {
-  Four sum[3] = {};
-  const Four mine = {own[0], own[1], own[2], 0.0};
-  for (const Place* place = begin; place < end; ++place, block += 9) {
-    const double* from = c + place->column_dof;
-    const Four x = Four{from[0], from[1], from[2], 0.0} - mine;
-    for (Index r = 0; r < 3; ++r) sum[r] += __builtin_convertvector(*reinterpret_cast<const FourSingle*>(block + 3 * r), Four) * x;
-  }
-  for (Index r = 0; r < 3; ++r) product[r] = (sum[r][0] + sum[r][2]) + sum[r][1];
+TAUT_ALWAYS_INLINE void add_three(const double* x, Four& to) { to += Four{x[0], x[1], x[2], 0.0}; }
+
+// Row by row, lane by lane.
+TAUT_ALWAYS_INLINE void add_product(const float* block, const Four& x, Four (&sum)[3]) {
+  for (Index r = 0; r < 3; ++r) sum[r] += __builtin_convertvector(*reinterpret_cast<const FourSingle*>(block + 3 * r), Four) * x;
 }
 
-TAUT_MULTIVERSION double advance_rows(const Index* row_start, const Place* place, const float* values, Index begin, Index end, double beta,
-                                      const double* r, const double* c, double* p, double* q) {
+}  // namespace
+
+// E's rows as they are now.
+struct BlockRemainder::Rows {
+  const Index *row_start, *row_end, *corner_start;  // corner_start: null where nothing is replaced
+  const Place* place;
+  const Corner* corner;
+  const float* values;
+
+  TAUT_ALWAYS_INLINE void product(Index i, const double* c, double* result) const {
+    Four sum[3] = {};
+    Four own = {};
+    add_three(c + 3 * i, own);
+    for (Index k = row_start[i]; k < row_end[i]; ++k) {
+      Four x = -own;
+      add_three(c + place[k].column_dof, x);
+      add_product(values + Offset{9} * k, x, sum);
+    }
+    if (corner_start)
+      for (const Corner* at = corner + corner_start[i]; at < corner + corner_start[i + 1]; ++at) {
+        Four x = own, sides = {};
+        add_three(c + at->opposite_dof, x);
+        for (const Index dof : at->side_dof) add_three(c + dof, sides);
+        x -= sides;
+        add_product(values + Offset{9} * at->block, x, sum);
+      }
+    for (Index r = 0; r < 3; ++r) result[r] = (sum[r][0] + sum[r][2]) + sum[r][1];
+  }
+};
+
+namespace {
+
+TAUT_MULTIVERSION double advance_rows(const BlockRemainder::Rows& rows, Index begin, Index end, double beta, const double* r, const double* c,
+                                      double* p, double* q) {
   double energy = 0.0;
   for (Index i = begin; i < end; ++i) {
     double product[3];
-    row_product(place + row_start[i], place + row_start[i + 1], values + Offset{9} * row_start[i], c, c + 3 * i, product);
+    rows.product(i, c, product);
     for (Index j = 3 * i; j < 3 * i + 3; ++j) {
       p[j] = r[j] + beta * p[j];
       q[j] = p[j] + product[j - 3 * i];
@@ -45,19 +77,83 @@ TAUT_MULTIVERSION double advance_rows(const Index* row_start, const Place* place
   return energy;
 }
 
+TAUT_ALWAYS_INLINE void add_block(const float* block, FourSingle (&sum)[3]) {
+  for (Index r = 0; r < 3; ++r) sum[r] += *reinterpret_cast<const FourSingle*>(block + 3 * r);
+}
+
+TAUT_ALWAYS_INLINE double squared_norm(const FourSingle (&block)[3]) {
+  Four sum = {};
+  for (Index r = 0; r < 3; ++r) {
+    const Four row = __builtin_convertvector(block[r], Four);
+    sum += row * row;
+  }
+  return (sum[0] + sum[2]) + sum[1];
+}
+
+// Of the rows, squared.
+TAUT_MULTIVERSION BlockRemainder::Ratios largest_ratios(const BlockRemainder::Rows& rows, Index begin, Index end, const double* masses) {
+  BlockRemainder::Ratios largest;
+  for (Index i = begin; i < end; ++i) {
+    const double weight = 1.0 / (masses[i] * masses[i]);
+    FourSingle dropped[3] = {}, replaced[3] = {};
+    for (Index k = rows.row_start[i]; k < rows.row_end[i]; ++k) add_block(rows.values + Offset{9} * k, dropped);
+    const double ratio = weight * squared_norm(dropped);
+    largest.dropped = ratio > largest.dropped ? ratio : largest.dropped;
+    if (!rows.corner_start) continue;
+    for (const Corner* at = rows.corner + rows.corner_start[i]; at < rows.corner + rows.corner_start[i + 1]; ++at)
+      add_block(rows.values + Offset{9} * at->block, replaced);
+    const double other = weight * squared_norm(replaced);
+    largest.replaced = other > largest.replaced ? other : largest.replaced;
+  }
+  return largest;
+}
+
 }  // namespace
 
-void BlockRemainder::analyze(std::shared_ptr<const BlockPattern> pattern, std::span<const std::uint8_t> mask) {
+BlockRemainder::Rows BlockRemainder::rows() const {
+  return {row_start_.data(), replaced_ ? row_split_.data() : row_start_.data() + 1, replaced_ ? corner_start_.data() : nullptr,
+          place_.data(),     corner_.data(),                                        values_.data()};
+}
+
+void BlockRemainder::analyze(std::shared_ptr<const BlockPattern> pattern, std::span<const std::uint8_t> mask,
+                             std::span<const Parallelogram> replaceable) {
   const BlockPattern& p = *pattern;
   assert(static_cast<Index>(mask.size()) == p.blocks() && p.uniform_dim == 3);
+  std::vector<Index> position(mask.size(), -1);  // of replaceable blocks
+  for (const Parallelogram& of : replaceable) position[of.block] = position[of.opposite] = 0;
   row_start_.assign(1, 0);
+  row_split_.clear();
   place_.clear();
   for (Index i = 0; i < p.rows(); ++i) {
-    for (Index k = p.row_start[i]; k < p.row_start[i + 1]; ++k)
-      if (!mask[k] && k != p.diagonal[i]) place_.push_back({p.column_dof[k], p.block_offset[k]});
+    for (const bool is_replaceable : {false, true}) {
+      if (is_replaceable) row_split_.push_back(static_cast<Index>(place_.size()));
+      for (Index k = p.row_start[i]; k < p.row_start[i + 1]; ++k) {
+        if (mask[k] || k == p.diagonal[i] || (position[k] >= 0) != is_replaceable) continue;
+        if (is_replaceable) position[k] = static_cast<Index>(place_.size());
+        place_.push_back({p.column_dof[k], p.block_offset[k]});
+      }
+    }
     row_start_.push_back(static_cast<Index>(place_.size()));
   }
   values_.assign(static_cast<std::size_t>(nonzeros()) + overread, 0.0f);
+
+  const auto corners = [](const Parallelogram& of) { return std::array{of.a, of.b, of.c, of.d}; };
+  corner_start_.assign(static_cast<std::size_t>(p.rows()) + 1, 0);
+  for (const Parallelogram& of : replaceable)
+    for (const Index i : corners(of)) ++corner_start_[i + 1];
+  for (Index i = 0; i < p.rows(); ++i) corner_start_[i + 1] += corner_start_[i];
+  corner_.resize(4 * replaceable.size());
+  std::vector<Index> next(corner_start_.begin(), corner_start_.end() - 1);
+  for (const Parallelogram& of : replaceable) {
+    const auto corner = corners(of);
+    for (std::size_t k = 0; k < 4; ++k) {
+      // The nearer row's copy: it is read about then.
+      const bool from_c = std::abs(corner[k] - of.c) < std::abs(corner[k] - of.a);
+      corner_[next[corner[k]]++] = {position[from_c ? of.opposite : of.block], p.dof_start[corner[(k + 2) % 4]],
+                                    {p.dof_start[corner[(k + 1) % 4]], p.dof_start[corner[(k + 3) % 4]]}};
+    }
+  }
+  replaced_ = false;
   pattern_ = std::move(pattern);
 }
 
@@ -77,16 +173,40 @@ void BlockRemainder::update_rows(const BlockCsr& a, Index begin, Index end) {
 
 double BlockRemainder::advance(double beta, std::span<const double> r, std::span<const double> c, std::span<double> p,
                                std::span<double> q) const {
+  const Rows all = rows();
   return ordered_sum(
-      pattern_->rows(),
-      [&](Index begin, Index end) {
-        return advance_rows(row_start_.data(), place_.data(), values_.data(), begin, end, beta, r.data(), c.data(), p.data(), q.data());
-      },
+      pattern_->rows(), [&](Index begin, Index end) { return advance_rows(all, begin, end, beta, r.data(), c.data(), p.data(), q.data()); },
       rows_per_task, 1);
 }
 
+void BlockRemainder::subtract(std::span<const double> c, std::span<double> q) const {
+  const Rows all = rows();
+  parallel_for(pattern_->rows(), rows_per_task, [&](Index begin, Index end) {
+    for (Index i = begin; i < end; ++i) {
+      double product[3];
+      all.product(i, c.data(), product);
+      for (Index r = 0; r < 3; ++r) q[3 * i + r] -= product[r];
+    }
+  });
+}
+
+BlockRemainder::Ratios BlockRemainder::ratios(std::span<const double> masses) const {
+  constexpr double up = 1.0 + 1e-6;  // the blocks are rounded
+  const Rows all = rows();
+  const Index nodes = pattern_->rows(), tasks = (nodes + rows_per_task - 1) / rows_per_task;
+  std::vector<Ratios> largest(static_cast<std::size_t>(tasks));
+  parallel_for(tasks, 1, [&](Index begin, Index end) {
+    for (Index t = begin; t < end; ++t)
+      largest[t] = largest_ratios(all, rows_per_task * t, std::min(nodes, rows_per_task * (t + 1)), masses.data());
+  });
+  Ratios result;
+  for (const Ratios& of : largest) result = {std::max(result.dropped, of.dropped), std::max(result.replaced, of.replaced)};
+  return {up * std::sqrt(result.dropped), up * std::sqrt(result.replaced)};
+}
+
 Offset BlockRemainder::bytes() const {
-  return static_cast<Offset>(values_.size() * sizeof(float) + place_.size() * sizeof(Place) + row_start_.size() * sizeof(Index));
+  const auto bytes_of = [](const auto& list) { return static_cast<Offset>(list.size() * sizeof(list[0])); };
+  return bytes_of(values_) + bytes_of(place_) + bytes_of(corner_) + bytes_of(row_start_) + bytes_of(row_split_) + bytes_of(corner_start_);
 }
 
 }  // namespace taut

@@ -4,6 +4,10 @@
 //
 //   A = P + E       E: the blocks outside a mask, and on the diagonal what makes their rows sum to zero:  E c = Σ_j A_ij (c_j - c_i)
 //
+// or, where parallelograms stand in for some of these blocks (linalg/parallelogram.h), for corner a, and likewise for the others,
+//
+//   E c = Σ_j A_ij (c_j - c_i) over the blocks that nothing stands in for  +  Σ A_ac (c_a - c_b + c_c - c_d)
+
 // and with it conjugate gradients' product without reading A. For the direction c = z + β c', z = P⁻¹ r, of a method preconditioned by P
 // itself, P c is known (Eisenstat 1981, SIAM J. Sci. Stat. Comput. 2, had the same idea for SSOR):
 //
@@ -21,19 +25,31 @@
 #include <vector>
 
 #include "taut/linalg/block_csr.h"
+#include "taut/linalg/parallelogram.h"
 
 namespace taut {
 
 class BlockRemainder {
  public:
-  // mask: one byte per block, 0 for those of E; not of 3x3 blocks: asserted. Allocates; the rest does not.
-  void analyze(std::shared_ptr<const BlockPattern> pattern, std::span<const std::uint8_t> mask);
+  // mask: one byte per block, 0 for those of E; not of 3x3 blocks: asserted. replaceable: what may stand in for some of them. Allocates;
+  // the rest does not.
+  void analyze(std::shared_ptr<const BlockPattern> pattern, std::span<const std::uint8_t> mask, std::span<const Parallelogram> replaceable = {});
   // Takes the values of E from a matrix of that pattern (asserted).
   void update(const BlockCsr& a);
   // The same for its rows begin ... end-1; rows may be taken in any order and in parallel.
   void update_rows(const BlockCsr& a, Index begin, Index end);
+  // Whether the parallelograms do stand in, from now on.
+  void set_replaced(bool replaced) { replaced_ = replaced; }
   // p = r + beta p, q = p + E c; returns cᵀ q. Same bits for any number of threads.
   double advance(double beta, std::span<const double> r, std::span<const double> c, std::span<double> p, std::span<double> q) const;
+  // q -= E c
+  void subtract(std::span<const double> c, std::span<double> q) const;
+  // The largest sum of blocks B = -A_ij at a node, in the Frobenius norm, relative to its mass (kg): of those that are left out for good, and
+  // of the parallelograms at whose corners it is. Rounded upwards.
+  struct Ratios {
+    double dropped = 0.0, replaced = 0.0;
+  };
+  Ratios ratios(std::span<const double> masses) const;
   Offset nonzeros() const { return Offset{9} * static_cast<Offset>(place_.size()); }
   Offset bytes() const;
 
@@ -41,11 +57,23 @@ class BlockRemainder {
   struct Place {
     Index column_dof, in_row;
   };
+  // A parallelogram at one of its corners: which block, and the first unknowns of the corner opposite and of the two between.
+  struct Corner {
+    Index block, opposite_dof, side_dof[2];
+  };
+
+  struct Rows;  // what the products read
 
  private:
+  Rows rows() const;
+
   std::shared_ptr<const BlockPattern> pattern_;
+  bool replaced_ = false;
   std::vector<Index> row_start_{0};
+  std::vector<Index> row_split_;     // per row: its blocks from here on are replaceable
   std::vector<Place> place_;
+  std::vector<Index> corner_start_;  // per row
+  std::vector<Corner> corner_;
   LargeVector<float> values_;  // row-major blocks, and a few entries that are read too many
 };
 

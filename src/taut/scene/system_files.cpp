@@ -125,11 +125,10 @@ void StoredSystem::read_core(const fs::path& path) {
 
 void StoredSystem::read_masses(const fs::path& path) {
   const std::vector<double> of_unknowns = read_vector(path, matrix_.dofs());
-  std::vector<double> masses;
-  for (std::size_t i = 0; i < of_unknowns.size(); i += 3) masses.push_back(of_unknowns[i]);
-  for (const double m : masses)
+  for (std::size_t i = 0; i < of_unknowns.size(); i += 3) masses_.push_back(of_unknowns[i]);
+  for (const double m : masses_)
     if (!(m > 0.0)) throw InputError({path.string()}, fmt::format("holds {:.9g}: masses are positive", m));
-  rho_ = remainder_ratio(matrix_, core_, masses);
+  rho_ = remainder_ratio(matrix_, core_, masses_);
   if (stiffness_ < 0.0) stiffness_ = 0.5 * block_diagonal_condition(matrix_) - 1.0;
 }
 
@@ -137,10 +136,11 @@ LinearSystem StoredSystem::system() const {
   LinearSystem system;
   system.matrix = &matrix_;
   system.rhs = rhs_;
-  system.guess = guess_;
+  system.guess = system.last = guess_;
   system.core = core_;
   system.rho = rho_;
   system.stiffness = stiffness_;
+  system.masses = masses_;
   system.positions = positions_;
   if (constraints_) {
     system.constraints = &*constraints_;

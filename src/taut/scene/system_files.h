@@ -45,6 +45,7 @@ class StoredSystem {
   std::vector<double> rhs_, z_, guess_, positions_;
   std::optional<ConstraintSet> constraints_;
   std::vector<std::uint8_t> core_;
+  std::vector<double> masses_;
   double rho_ = -1.0, stiffness_ = -1.0;
 };
 

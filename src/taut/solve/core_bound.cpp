@@ -64,8 +64,12 @@ double block_diagonal_condition(const BlockCsr& a) {
 }
 
 int core_iteration_bound(double rho, double start_value, double tolerance) {
+  return iteration_bound(2.0 * (1.0 + rho), start_value, tolerance);
+}
+
+int iteration_bound(double condition, double start_value, double tolerance) {
   if (start_value <= tolerance) return 0;
-  const double root = std::sqrt(2.0 * (1.0 + rho));
+  const double root = std::sqrt(condition);
   return static_cast<int>(std::max(1.0, std::ceil(0.5 * root * std::log(2.0 * root * start_value / tolerance))));
 }
 

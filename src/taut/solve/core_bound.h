@@ -2,7 +2,8 @@
 // How many iterations corePCG can need at most (docs/mathematics.md, 5, not in the paper):
 //
 //   ρ = max_i λmax(D_R,i)/m_i over the springs outside the core       cond(P⁻¹A) <= κ = 2 (1 + ρ)
-//   (1 + 2 ρ for core_fast, which takes these springs out of P; the same bound is used)
+//   (1 + 2 ρ for core_fast, which takes these springs out of P; the same bound is used. Where it replaces some of them by parallelograms,
+//   κ = (1 + 4 ρ_replaced) (1 + 2 ρ_dropped), see BlockRemainder::ratios)
 //   under the stop rule δ <= tol² δ0, from sqrt(δ_start/δ0) = start:   ceil(½ sqrt(κ) ln(2 sqrt(κ) start / tol))
 //
 // It holds in exact arithmetic for elements of two nodes.
@@ -24,5 +25,7 @@ double remainder_ratio(const BlockCsr& a, std::span<const std::uint8_t> core, st
 double block_diagonal_condition(const BlockCsr& a);
 
 int core_iteration_bound(double rho, double start_value, double tolerance);
+// The same for any κ.
+int iteration_bound(double condition, double start_value, double tolerance);
 
 }  // namespace taut

@@ -12,6 +12,7 @@
 #include "taut/solve/full_space.h"
 #include "taut/solve/preconditioner_choice.h"
 #include "taut/solve/reduced_pcg.h"
+#include "taut/solve/replacement_choice.h"
 
 namespace taut {
 
@@ -42,20 +43,17 @@ Rounding rounding_in_single(const LinearSystem& system) {
   return {4.0 * unit * std::sqrt(1.0 + system.stiffness), 0.22 * unit * (1.0 + system.stiffness)};
 }
 
-// |error|_A / |x|_A where the stop test ends, in tolerances: by the bound on the core's condition.
-double allowed_error(double rho) { return rho >= 0.0 ? std::min(most_allowed, std::sqrt(2.0 * (1.0 + rho))) : 1.0; }
-
-// y = P x: the blocks of the mask, and the others lumped or not at all.
-void multiply_core(const BlockCsr& a, std::span<const std::uint8_t> mask, bool lumped, std::span<const double> x, std::span<double> y) {
+// y = P x: the blocks of the mask.
+void multiply_core(const BlockCsr& a, std::span<const std::uint8_t> mask, std::span<const double> x, std::span<double> y) {
   const BlockPattern& p = *a.pattern;
   parallel_for(p.rows(), 256, [&](Index begin, Index end) {
     for (Index i = begin; i < end; ++i) {
       const Index rows = p.dim(i), width = p.width(i);
       for (Index r = 0; r < rows; ++r) y[p.dof_start[i] + r] = 0.0;
       for (Index k = p.row_start[i]; k < p.row_start[i + 1]; ++k) {
-        if (!mask[k] && !lumped) continue;
+        if (!mask[k]) continue;
         const double* block = a.block(i, k);
-        const Index from = mask[k] ? p.column_dof[k] : p.dof_start[i];
+        const Index from = p.column_dof[k];
         for (Index r = 0; r < rows; ++r)
           for (Index c = 0; c < p.dim(p.column[k]); ++c) y[p.dof_start[i] + r] += block[r * width + c] * x[from + c];
       }
@@ -77,7 +75,7 @@ bool CoreFast::analyze_if_new(const LinearSystem& system, SolveSummary& summary)
     pattern_ = nullptr;
     return false;
   }
-  if (pattern_->uniform_dim == 3) remainder_.analyze(pattern_, factor_.analyzed_blocks());
+  if (pattern_->uniform_dim == 3) remainder_.analyze(pattern_, factor_.analyzed_blocks(), factor_.parallelograms());
   return true;
 }
 
@@ -87,8 +85,8 @@ bool CoreFast::factorize(CholeskyPrecision precision, const LinearSystem& system
   const BlockCsr& a = *system.matrix;
   const NodeBasis basis = free_basis(system);
   knows_products_ = lumped_ && precision == CholeskyPrecision::single_precision;
-  BlocksOutside outside{lumped_};
-  if (knows_products_) outside.visit = [&](Index begin, Index end) { remainder_.update_rows(a, begin, end); };
+  BlocksOutside outside{lumped_, replaced_};
+  if (knows_products_ || replaced_) outside.visit = [&](Index begin, Index end) { remainder_.update_rows(a, begin, end); };
   if (starts_at_rest_) {
     summary.status = factor_.factorize(a, basis, load_, &delta0_, outside);
     delta_ = delta0_;
@@ -109,14 +107,37 @@ bool CoreFast::begin_in_double(const LinearSystem& system, bool single_has_faile
   if (!lumped_ || summary.status.outcome != Outcome::not_positive_definite) return false;
   // Not what springs alone would leave.
   lumped_ = false;
+  take_outside(system);
   summary.remark += fmt::format("{}the blocks outside the core not lumped: {}", summary.remark.empty() ? "" : "; ", summary.status.message);
   ++summary.fallbacks;
   return factorize(CholeskyPrecision::double_precision, system, summary);
 }
 
-// For the search direction c and w = P c: wᵀ P̃⁻¹ w / cᵀ w, which is 1 but for the factor's rounding. Takes q_ for w.
+// What becomes of the springs outside the core, but for whether they are lumped.
+void CoreFast::take_outside(const LinearSystem& system) {
+  replaced_ = lumped_ && !system.masses.empty() && !system.last.empty() &&
+              replacing_pays(*system.matrix, factor_.parallelograms(), system.last);
+  remainder_.set_replaced(replaced_);
+  condition_ = system.rho >= 0.0 ? 2.0 * (1.0 + system.rho) : -1.0;
+  excess_ = 1.0;
+}
+
+// For what is replaced, once the remainder has been taken from the matrix.
+void CoreFast::bound_replaced(const LinearSystem& system) {
+  if (!replaced_) return;
+  const BlockRemainder::Ratios ratio = remainder_.ratios(system.masses);
+  excess_ = 1.0 + 4.0 * ratio.replaced;
+  condition_ = excess_ * (1.0 + 2.0 * ratio.dropped);
+}
+
+// For the search direction c, whose product with A is in q, and w = P c: wᵀ P̃⁻¹ w / cᵀ w, which is 1 but for the factor's rounding.
+// Takes q_ for w.
 double CoreFast::factor_quality(const BlockCsr& a) {
-  multiply_core(a, factor_.analyzed_blocks(), lumped_, c_, q_);
+  if (lumped_) {
+    remainder_.subtract(c_, q_);
+  } else {
+    multiply_core(a, factor_.analyzed_blocks(), c_, q_);
+  }
   const double energy = dot(c_, q_);
   return factor_.solve_forward(q_) / energy;
 }
@@ -144,7 +165,8 @@ KrylovResult CoreFast::iterate(const LinearSystem& system, std::span<double> x, 
   const BlockCsr& a = *system.matrix;
   KrylovResult result;
   const Rounding rounding = rounding_in_single(system);
-  const double scale = std::sqrt(delta0_), limit = options_.tolerance * scale, harmless = harmless_share * allowed_error(system.rho) * limit;
+  const double scale = std::sqrt(delta0_), limit = options_.tolerance * scale, allowed = condition_ > 0.0 ? std::min(most_allowed, std::sqrt(condition_)) : 1.0;
+  const double harmless = harmless_share * allowed * limit;  // |error|_A / |x|_A may be `allowed` tolerances by the stop test
   double delta = delta_, previous = 0.0;  // previous: of the direction in c_; 0 begins anew
   double seen = std::sqrt(delta);         // of the last residual that came from A itself
   double begin = seen, aim = limit;       // of this part of the loop: where it began, what it had to reach
@@ -156,7 +178,7 @@ KrylovResult CoreFast::iterate(const LinearSystem& system, std::span<double> x, 
   if (coefficients) *coefficients = {};
   std::ranges::fill(p_, 0.0);
   const auto end_part = [&] {
-    if (system.rho >= 0.0) bound_iterations_ += core_iteration_bound(system.rho, begin / scale, aim / scale);
+    if (condition_ > 0.0) bound_iterations_ += iteration_bound(condition_, begin / scale, aim / scale);
   };
   while (true) {
     const double size = std::sqrt(std::abs(delta));
@@ -169,7 +191,7 @@ KrylovResult CoreFast::iterate(const LinearSystem& system, std::span<double> x, 
       continue;
     }
     if (!(size > limit) || result.iterations >= max_iterations) break;
-    if (in_single && system.rho >= 0.0 && result.iterations - begin_iterations >= core_iteration_bound(system.rho, begin / scale, aim / scale)) {
+    if (in_single && condition_ > 0.0 && result.iterations - begin_iterations >= iteration_bound(condition_, begin / scale, aim / scale)) {
       result.status = {Outcome::breakdown, fmt::format("more than the {} iterations that the core allows: its factor is not exact enough in single precision",
                                                        result.iterations - begin_iterations)};
       break;
@@ -228,10 +250,12 @@ void CoreFast::run(const LinearSystem& system, std::span<double> x, SolveSummary
 
   start(system, x);
   lumped_ = system.rho >= 0.0 && system.matrix->pattern->uniform_dim == 3;
+  take_outside(system);
   summary.solve_ms = timer.lap();
   const bool tries_single = !(rounding_in_single(system).worst > too_large_for_single);
   const bool in_single = tries_single && factorize(CholeskyPrecision::single_precision, system, summary);
   if (!in_single && !begin_in_double(system, tries_single, summary)) return;
+  bound_replaced(system);
   summary.factor_ms = timer.lap();
 
   const int limit = iteration_limit(a.dofs());
@@ -262,8 +286,9 @@ void CoreFast::run(const LinearSystem& system, std::span<double> x, SolveSummary
     summary.solve_ms += timer.lap();
   }
   take_over(result, summary);
-  if (system.rho >= 0.0) summary.bound_iterations = bound_iterations_;
-  if (lumped_ && from_rest && energy_ > 0.0) summary.error_bound = result.stop_value * std::sqrt(delta0_ / energy_);
+  summary.replaced = replaced_;
+  if (condition_ > 0.0) summary.bound_iterations = bound_iterations_;
+  if (lumped_ && from_rest && energy_ > 0.0) summary.error_bound = result.stop_value * std::sqrt(excess_ * delta0_ / energy_);
   summary.factor_nonzeros = factor_.statistics().nonzeros;
   summary.factor_flops = factor_.statistics().flops;
   if (pattern_->uniform_dim == 3) summary.left_out_nonzeros = static_cast<double>(remainder_.nonzeros());

@@ -52,6 +52,8 @@ class CoreFast : public ConstrainedSolver {
   bool factorize(CholeskyPrecision precision, const LinearSystem& system, SolveSummary& summary);
   void residual(const LinearSystem& system, std::span<const double> x);
   bool begin_in_double(const LinearSystem& system, bool single_has_failed, SolveSummary& summary);
+  void take_outside(const LinearSystem& system);
+  void bound_replaced(const LinearSystem& system);
   double factor_quality(const BlockCsr& a);
   KrylovResult iterate(const LinearSystem& system, std::span<double> x, int done, int max_iterations, bool in_single);
 
@@ -61,6 +63,9 @@ class CoreFast : public ConstrainedSolver {
   BlockRemainder remainder_;
   bool starts_at_rest_ = false;               // the first residual is the load
   bool lumped_ = false;                       // P is without the springs outside the core
+  bool replaced_ = false;                     // ... and with parallelograms for some of them
+  double condition_ = -1.0;                   // what cond(P⁻¹A) cannot exceed; negative: not known
+  double excess_ = 1.0;                       // P <= excess A
   bool knows_products_ = false;               // the remainder has been taken from the matrix
   double delta0_ = 0.0, delta_ = 0.0;         // b̂ᵀ P̃⁻¹ b̂, and of the residual at the factorisation
   double energy_ = 0.0;                       // |x - x0|_A² that the loop has found

@@ -9,8 +9,10 @@
 //   z            3N doubles, the prescribed part of x (its free part is ignored); may be empty without constraints
 //   guess        3N doubles, last step's x, or empty; iterative methods start at S guess + (I-S) z (Ascher & Boxerman 2003)
 //   guess_is_iterate    the guess is no last step's x but one for this very system: Newton's last, or what another method has left
+//   last         3N doubles, last step's x, or empty: nobody starts there, it only tells how smooth x may be (solve/replacement_choice.h)
 //   stiffness    σ, what the elements can add to a node's diagonal block, relative to its mass: |A_ii| <= (1 + σ) m_i; tells how exact a
 //                factor in single precision is (solve/core_fast.h). Negative: not known
+//   masses       N doubles, kg, those that ρ is relative to; or empty
 //   positions    3N doubles, m, where the nodes are; or empty. Only multigrid uses them: for the rotations in its near-null space
 //   core         one byte per block of A, 1 for the blocks of the matrix core (paper Section 6); empty: only block-diagonal blocks
 //   rho          ρ of docs/mathematics.md, 5 for that core: what the blocks outside it add to the diagonal, relative to the masses; bounds
@@ -42,7 +44,9 @@ struct LinearSystem {
   std::span<const double> z;
   std::span<const double> guess;
   bool guess_is_iterate = false;
+  std::span<const double> last;
   double stiffness = -1.0;
+  std::span<const double> masses;
   std::span<const double> positions;
   std::span<const std::uint8_t> core;
   double rho = -1.0;
@@ -75,6 +79,7 @@ struct SolveSummary {
   const char* precision = "double";  // of the factor that the answer came from: "single" or "double"
   int fallbacks = 0;                 // times that single precision, or a method that `auto` tried first, failed and another took over
   double memory_bytes = 0.0;         // what the method holds beyond A and the vectors
+  bool replaced = false;             // core_fast: parallelograms stood in for springs outside the core
   std::string remark;                // "on eigen: CHOLMOD is not built in", ...
   double total_ms() const { return reduce_ms + order_ms + factor_ms + solve_ms; }
 };

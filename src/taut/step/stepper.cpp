@@ -205,7 +205,9 @@ LinearSystem Stepper::system() const {
   system.z = flat(z_);
   system.guess = flat(current_guess_);
   system.guess_is_iterate = guess_is_iterate_;
+  system.last = flat(current_guess_);
   system.stiffness = stiffness_;
+  system.masses = external_.masses();
   system.core = core_.mask;
   system.rho = core_.rho;
   system.stretch_core = {stretch_core_.mask, stretch_core_.rho};

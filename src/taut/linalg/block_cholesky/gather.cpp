@@ -5,7 +5,6 @@
 #include "taut/base/parallel.h"
 #include "taut/base/simd.h"
 #include "taut/linalg/block_cholesky/numeric_factor.h"
-#include "taut/linalg/small_block.h"
 
 namespace taut {
 
@@ -24,14 +23,80 @@ Index find_block(const BlockPattern& p, Index node, Index other) {
 
 typedef double Doubles __attribute__((vector_size(32), aligned(8), may_alias));
 
-// The sum of 3x3 blocks of a row, the first of which begins at column `first`. Reads one number behind the row.
-template <class T>
-TAUT_ALWAYS_INLINE void sum_blocks_3(const double* row, Index width, Index first, std::span<const Index> others, T* to) {
-  for (Index j = 0; j < 3; ++j, row += width) {
-    Doubles sum = *reinterpret_cast<const Doubles*>(row + first);
-    for (const Index other : others) sum += *reinterpret_cast<const Doubles*>(row + other);
-    for (Index i = 0; i < 3; ++i) to[3 * j + i] = static_cast<T>(sum[i]);
+// A 3x3 block of A and what is added to it: row by row, lane by lane, the fourth one nobody's. Reads one number behind the row.
+struct BlockSum {
+  Doubles row[3];
+
+  TAUT_ALWAYS_INLINE BlockSum(const double* from, Index width) {
+    for (Index j = 0; j < 3; ++j) row[j] = *reinterpret_cast<const Doubles*>(from + j * width);
   }
+  TAUT_ALWAYS_INLINE void add(const double* from, Index width) {
+    for (Index j = 0; j < 3; ++j) row[j] += *reinterpret_cast<const Doubles*>(from + j * width);
+  }
+  TAUT_ALWAYS_INLINE void add(const Replacement::Addend& addend, const double* values) {
+    const double f = addend.factor;
+    const Doubles factor = {f, f, f, f};
+    for (Index j = 0; j < 3; ++j) row[j] += factor * *reinterpret_cast<const Doubles*>(values + addend.value + j * addend.width);
+  }
+  template <class T>
+  TAUT_ALWAYS_INLINE void write(T* to) const {
+    typedef T Four __attribute__((vector_size(4 * sizeof(T)), aligned(sizeof(T)), may_alias));
+    for (Index j = 0; j < 2; ++j) *reinterpret_cast<Four*>(to + 3 * j) = __builtin_convertvector(row[j], Four);
+    for (Index i = 0; i < 3; ++i) to[6 + i] = static_cast<T>(row[2][i]);
+  }
+};
+
+// What gathering rows of 3x3 blocks of the analysed pattern itself reads.
+struct PlainRows {
+  const double* values;
+  const Offset *value_start, *gathered_start;
+  const Index *place, *block_start, *block_value;
+  const Index *lumped_start, *lumped;     // null: none is lumped
+  const Index* addend_start;              // null: nothing is replaced
+  const std::uint8_t* addend_count;
+  const Replacement::Addend* addend;
+};
+
+// Where a node's blocks will go: in the order of elimination, so anywhere.
+template <class T>
+TAUT_ALWAYS_INLINE void prefetch_gathered(const PlainRows& rows, Index k, const T* gathered) {
+  if (k < 0) return;
+  constexpr Offset line = 64 / sizeof(T);
+  const Offset end = rows.gathered_start[k] + Offset{9} * (rows.block_start[k + 1] - rows.block_start[k]);
+  for (Offset at = rows.gathered_start[k] / line * line; at < end; at += line) __builtin_prefetch(gathered + at, 1, 2);
+}
+
+template <class T>
+TAUT_ALWAYS_INLINE void gather_plain_row(const PlainRows& rows, Index i, T* gathered) {
+  const Index k = rows.place[i], width = static_cast<Index>((rows.value_start[i + 1] - rows.value_start[i]) / 3);
+  const double* row = rows.values + rows.value_start[i];
+  for (Index l = 0; l < 3 * width; l += 8) __builtin_prefetch(row + prefetch_distance + l, 0, 2);
+  T* to = gathered + rows.gathered_start[k];
+  const Index begin = rows.block_start[k], end = rows.block_start[k + 1];
+  const Replacement::Addend* addend = rows.addend_start ? rows.addend + rows.addend_start[i] : nullptr;
+  for (Index e = begin; e < end; ++e, to += 9) {
+    BlockSum sum(row + rows.block_value[e], width);
+    if (e == begin && rows.lumped)
+      for (Index l = rows.lumped_start[i]; l < rows.lumped_start[i + 1]; ++l) sum.add(row + rows.lumped[l], width);
+    if (addend)
+      for (const Replacement::Addend* stop = addend + rows.addend_count[e]; addend < stop; ++addend) sum.add(*addend, rows.values);
+    sum.write(to);
+  }
+}
+
+template <class T>
+TAUT_ALWAYS_INLINE void gather_plain_rows(const PlainRows& rows, Index begin, Index end, Index last, T* gathered) {
+  for (Index i = begin; i < end; ++i) {
+    if (i + rows_ahead < last) prefetch_gathered(rows, rows.place[i + rows_ahead], gathered);
+    gather_plain_row(rows, i, gathered);
+  }
+}
+
+TAUT_MULTIVERSION void gather_rows(const PlainRows& rows, Index begin, Index end, Index last, float* gathered) {
+  gather_plain_rows(rows, begin, end, last, gathered);
+}
+TAUT_MULTIVERSION void gather_rows(const PlainRows& rows, Index begin, Index end, Index last, double* gathered) {
+  gather_plain_rows(rows, begin, end, last, gathered);
 }
 
 }  // namespace
@@ -57,42 +122,44 @@ void NumericFactor<T>::gather_row(const FactorSource& source, Index k) {
   }
 }
 
-// Where a node's blocks will go: in the order of elimination, so anywhere.
+// What is added to the blocks of a row that gather_row has gathered.
 template <class T>
-TAUT_ALWAYS_INLINE void NumericFactor<T>::prefetch_gathered(Index k) const {
-  if (k < 0) return;
-  constexpr Offset line = 64 / sizeof(T);
-  const Offset end = layout_.gathered_start[k] + Offset{9} * (layout_.block_start[k + 1] - layout_.block_start[k]);
-  for (Offset at = layout_.gathered_start[k] / line * line; at < end; at += line) __builtin_prefetch(gathered_.data() + at, 1, 2);
+void NumericFactor<T>::add_replaced(const FactorSource& source, Index row) {
+  const Index k = layout_.place[row];
+  T* to = gathered_.data() + layout_.gathered_start[k];
+  const Replacement::Addend* addend = replacement_.addend.data() + replacement_.row_start[row];
+  for (Index e = layout_.block_start[k]; e < layout_.block_start[k + 1]; ++e, to += 9)
+    for (const auto* stop = addend + replacement_.count[e]; addend < stop; ++addend)
+      for (Index entry = 0; entry < 9; ++entry)
+        to[entry] += static_cast<T>(addend->factor * source.a.values[addend->value + entry / 3 * addend->width + entry % 3]);
 }
 
 template <class T>
 void NumericFactor<T>::gather(const FactorSource& source) {
   const BlockPattern& p = *source.a.pattern;
-  const bool is_plain = source.pattern_is_analyzed && p.uniform_dim == 3;
-  const auto row_3 = [&](Index i) {
-    const Index k = layout_.place[i], width = p.width(i);
-    const double* row = source.a.values.data() + p.value_start[i];
-    for (Index l = 0; l < 3 * width; l += 8) __builtin_prefetch(row + prefetch_distance + l, 0, 2);
-    if (i + rows_ahead < p.rows()) prefetch_gathered(layout_.place[i + rows_ahead]);
-    T* to = gathered_.data() + layout_.gathered_start[k];
-    Index e = layout_.block_start[k];
-    if (source.lumped) {
-      sum_blocks_3(row, width, layout_.block_value[e++], source.lumped->row(i), to);
-      to += 9;
-    }
-    for (; e < layout_.block_start[k + 1]; ++e, to += 9) copy_block_3(row + layout_.block_value[e], width, to);
-  };
+  const bool is_plain = source.pattern_is_analyzed && p.uniform_dim == 3, is_replaced = !source.replaced.empty();
+  const UnanalyzedBlocks* lumped = source.lumped;
+  const PlainRows rows{source.a.values.data(),
+                       p.value_start.data(),
+                       layout_.gathered_start.data(),
+                       layout_.place.data(),
+                       layout_.block_start.data(),
+                       layout_.block_value.data(),
+                       lumped ? lumped->row_start.data() : nullptr,
+                       lumped ? lumped->value.data() : nullptr,
+                       is_replaced ? replacement_.row_start.data() : nullptr,
+                       replacement_.count.data(),
+                       replacement_.addend.data()};
+  // The last row ends where A does: nothing may be read behind it.
+  const Index plain_end = is_plain ? p.rows() - 1 : 0;
   parallel_for(p.rows(), rows_per_task, [&](Index begin, Index end) {
     for (Index i = begin; i < end; i += rows_at_once) {
-      const Index stop = std::min(end, i + rows_at_once);
-      for (Index row = i; row < stop; ++row) {
-        // The last row ends where A does: nothing may be read behind it.
-        if (is_plain && row + 1 < p.rows()) {
-          row_3(row);
-        } else if (layout_.place[row] >= 0) {
-          gather_row(source, layout_.place[row]);
-        }
+      const Index stop = std::min(end, i + rows_at_once), plain_stop = std::clamp(plain_end, i, stop);
+      gather_rows(rows, i, plain_stop, plain_end, gathered_.data());
+      for (Index row = plain_stop; row < stop; ++row) {
+        if (layout_.place[row] < 0) continue;
+        gather_row(source, layout_.place[row]);
+        if (is_replaced) add_replaced(source, row);
       }
       if (source.visit) (*source.visit)(i, stop);
     }

@@ -64,6 +64,7 @@ Status NumericFactor<T>::factorize(const FactorSource& source, std::span<const I
   assert(loads.size() <= vectors_.size());
   if (planned_threads_ != thread_count()) plan();
   if (loads.size() > 1 && vectors_[1].bytes() == 0) vectors_[1] = AlignedArray<T>(layout_.vector_size);
+  if (!source.replaced.empty() && replacement_.addend.empty()) replacement_ = plan_replacement(source.replaced, *source.a.pattern, layout_);
   take_dims(source);
   gather(source);
   const auto run = [&](Index t) {

@@ -24,6 +24,7 @@
 #include "taut/base/status.h"
 #include "taut/linalg/block_cholesky/aligned_array.h"
 #include "taut/linalg/block_cholesky/factor_layout.h"
+#include "taut/linalg/block_cholesky/replacement.h"
 #include "taut/linalg/block_cholesky/runnable_kernels.h"
 #include "taut/linalg/node_basis.h"
 
@@ -34,7 +35,8 @@ struct FactorSource {
   const BlockCsr& a;
   NodeBasis basis;
   bool pattern_is_analyzed;  // A has the analysed pattern itself; else one that fits it, and blocks are searched
-  const UnanalyzedBlocks* lumped = nullptr;  // each is added to its row's diagonal block
+  const UnanalyzedBlocks* lumped = nullptr;      // each is added to its row's diagonal block
+  std::span<const Parallelogram> replaced = {};  // of the analysed pattern, and always the same ones; besides lumped
   const RowsVisitor* visit = nullptr;
 };
 
@@ -74,7 +76,7 @@ class NumericFactor {
   Offset panel_bytes() const { return packed_.bytes(); }
   Offset bytes() const {
     return gathered_.bytes() + packed_.bytes() + arena_.bytes() + scratch_.bytes() + vectors_[0].bytes() + vectors_[1].bytes() +
-           layout_.bytes();
+           layout_.bytes() + replacement_.bytes();
   }
 
  private:
@@ -86,7 +88,7 @@ class NumericFactor {
   void take_dims(const FactorSource& source);
   void gather(const FactorSource& source);
   void gather_row(const FactorSource& source, Index k);
-  void prefetch_gathered(Index k) const;
+  void add_replaced(const FactorSource& source, Index row);
   // scratch: the thread's
   void eliminate(Index s, bool shared, T* scratch);
   void assemble(const Front& front, T* panel) const;
@@ -104,6 +106,7 @@ class NumericFactor {
 
   const FrontKernels<T>& kernels_;
   FactorLayout layout_;
+  Replacement replacement_;  // planned when it is first asked for
   int planned_threads_ = 0;
   AlignedArray<T> gathered_, packed_, arena_, scratch_;
   Offset scratch_of_thread_ = 0;
