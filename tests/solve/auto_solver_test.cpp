@@ -37,7 +37,7 @@ TEST(AutoSolver, SolvesEveryRegimeToTheAccuracyOfCorePcg) {
   std::set<std::pair<std::string, CoreUsed>> methods;
   for (const double h : {0.2e-3, 1e-3, 3.67e-3, 16.7e-3, 33e-3})
     for (const double k_shear : {0.3, 30.0, 600.0})
-      for (const double k_stretch : {6.0, 6000.0, 6e6}) {
+      for (const double k_stretch : {1.0, 6000.0, 6e6}) {
         Steps steps({.k_stretch = k_stretch, .k_shear = k_shear, .k_bend = k_shear / 10, .h = h, .graded = ++seed % 2 == 0}, seed);
         SCOPED_TRACE(steps.sheet.material.describe());
         for (int step = 0; step < 8; ++step) {

@@ -67,13 +67,17 @@ Watched watch(const LinearSystem& system, const SolverOptions& options, std::spa
   return watched;
 }
 
-// Of five solves; of three or one where they take long.
+// Of as many solves as take a second, at least five: of a machine that others use, a few milliseconds tell little. One where it takes long.
 SolveSummary median_solve(ConstrainedSolver& solver, const LinearSystem& system, std::vector<double>& x) {
-  constexpr double short_ms = 100.0, long_ms = 1000.0;
+  constexpr double enough_ms = 1000.0, long_ms = 5000.0;
+  constexpr double least = 5, most = 41;
   std::vector<SolveSummary> solves;
-  const auto wanted = [&] { return solves.empty() || solves[0].total_ms() > long_ms ? 1u : solves[0].total_ms() > short_ms ? 3u : 5u; };
+  const auto wanted = [&] {
+    if (solves.empty() || solves[0].total_ms() > long_ms) return 1.0;
+    return std::clamp(enough_ms / std::max(solves[0].total_ms(), 1e-3), least, most);
+  };
   wait_for_quiet(*system.matrix);
-  while (solves.size() < wanted()) solves.push_back(solver.solve(system, x));
+  while (static_cast<double>(solves.size()) < wanted()) solves.push_back(solver.solve(system, x));
   std::ranges::sort(solves, {}, &SolveSummary::total_ms);
   return solves[solves.size() / 2];
 }

@@ -140,8 +140,8 @@ AutoSolver::Method AutoSolver::rival_of(Method chosen, const Solve& solve) {
     const double hoped =
         method == direct ? w.setup : w.total(tried(method) ? 0.5 * records_[method].iterations : least_iterations(method, solve));
     if (!tried(method) && hoped < to_beat) return method;
-    // Whether there is hope costs a look at the matrix.
-    if (!tried(method)) records_[method].next_trial = solves_ + shortest_patience;
+    // Whether there is hope costs a look at the matrix, but for a core.
+    if (!tried(method) && !has_core(method)) records_[method].next_trial = solves_ + shortest_patience;
     if (hoped < least) rival = method, least = hoped;
   }
   return rival;

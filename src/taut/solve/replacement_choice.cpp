@@ -9,8 +9,6 @@ namespace taut {
 namespace {
 
 constexpr Index most_samples = 512;
-// Iterations were as many or fewer below it in all scenes and cells of benches that were tried; at 1 they are about the same.
-constexpr double largest_share = 0.75;
 
 struct Energies {
   double across = 0.0, bent = 0.0;
@@ -39,7 +37,7 @@ bool replacing_pays(const BlockCsr& a, std::span<const Parallelogram> parallelog
     }
     return part;
   });
-  return sum.bent < largest_share * sum.across;
+  return sum.bent < sum.across;
 }
 
 }  // namespace taut

@@ -40,14 +40,17 @@ FactorSize estimate_factor(const SystemSize& size, double nonzeros) {
 
 namespace {
 
-// Product with Ã or a part of it, and the loop's dot products and updates.
-double loop_work(const SystemSize& size, double multiplied) {
-  return work_rates.stream * (8.5 * multiplied + (16.0 + 100.0) * size.unknowns);
+// Bytes of a number of a 3x3 block with its share of the block's place: in A, and outside the core (linalg/block_remainder.h).
+constexpr double in_matrix = 8.5, outside_core = 4.9;
+
+// A product that reads so many bytes, and the loop's dot products and updates.
+double loop_work(const SystemSize& size, double product_bytes) {
+  return work_rates.stream * (product_bytes + (16.0 + 100.0) * size.unknowns);
 }
 
 // What is left out of the core is copied first.
 double copy_work(const SystemSize& size, const FactorSize& factor) {
-  return work_rates.stream * (8.0 * size.nonzeros + 16.0 * factor.left_out);
+  return work_rates.stream * (8.0 * size.nonzeros + outside_core * factor.left_out);
 }
 
 double reduction_work(const SystemSize& size) { return work_rates.reduce * 8.0 * size.nonzeros; }
@@ -59,18 +62,18 @@ double factor_solve_work(const SystemSize& size, const FactorSize& factor) {
 }  // namespace
 
 MethodWork block_diagonal_work(const SystemSize& size) {
-  return {reduction_work(size) + work_rates.stream * 60.0 * size.unknowns, loop_work(size, size.nonzeros) + work_rates.stream * 40.0 * size.unknowns};
+  return {reduction_work(size) + work_rates.stream * 60.0 * size.unknowns, loop_work(size, in_matrix * size.nonzeros) + work_rates.stream * 40.0 * size.unknowns};
 }
 
 MethodWork incomplete_work(const SystemSize& size, double nonzeros, double preparations) {
   return {reduction_work(size) + preparations * work_rates.incomplete_setup * 8.0 * nonzeros,
-          loop_work(size, size.nonzeros) + work_rates.incomplete * 8.0 * nonzeros};
+          loop_work(size, in_matrix * size.nonzeros) + work_rates.incomplete * 8.0 * nonzeros};
 }
 
 MethodWork core_work(const SystemSize& size, const FactorSize& factor, double preparations) {
   const double once = 0.5 * (work_rates.factor * factor.flops + work_rates.factor_entry * factor.nonzeros);
   return {copy_work(size, factor) + once * (1.0 + 2.0 * (preparations - 1.0)),
-          loop_work(size, factor.left_out) + factor_solve_work(size, factor)};
+          loop_work(size, outside_core * factor.left_out) + factor_solve_work(size, factor)};
 }
 
 MethodWork direct_work(const FactorSize& factor) {
