@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "bench/quiet.h"
 #include "taut/base/parallel.h"
@@ -20,7 +21,7 @@ struct Enough {};
 
 struct Watched {
   std::array<int, wanted_errors.size()> iterations;
-  std::array<double, wanted_errors.size()> stop{};  // the stop test's least value until there
+  std::array<double, wanted_errors.size()> stop{}, before{};  // the stop test's least value there, and an iteration earlier
   Status status;
   bool direct = false;
 };
@@ -40,9 +41,10 @@ Watched watch(const LinearSystem& system, const SolverOptions& options, std::spa
   watched.iterations.fill(-1);
   double least = 1.0;
   const auto note = [&](int iteration, double stop, double error) {
-    least = std::min(least, stop);
+    const double before = std::exchange(least, std::min(least, stop));
     for (std::size_t e = 0; e < wanted_errors.size(); ++e)
-      if (watched.iterations[e] < 0 && error <= wanted_errors[e]) watched.iterations[e] = iteration, watched.stop[e] = least;
+      if (watched.iterations[e] < 0 && error <= wanted_errors[e])
+        watched.iterations[e] = iteration, watched.stop[e] = least, watched.before[e] = before;
   };
   std::vector<double> x(system.rhs.size());
   const auto solver = make_solver(options);
@@ -65,6 +67,11 @@ Watched watch(const LinearSystem& system, const SolverOptions& options, std::spa
   } catch (const Enough&) {
   }
   return watched;
+}
+
+// The error asked for, or what is nearest to it and ends in the same iteration.
+double tolerance_for(const Watched& watched, std::size_t e) {
+  return std::max({1e-15, std::min(wanted_errors[e], 0.99 * watched.before[e]), 1.01 * watched.stop[e]});
 }
 
 // Of as many solves as take a second, at least five: of a machine that others use, a few milliseconds tell little. One where it takes long.
@@ -141,7 +148,7 @@ EqualErrorResult measure_equal_error(const LinearSystem& system, const std::stri
     if (iterations < 0) continue;
     if (e == 0 || (!watched.direct && iterations != watched.iterations[e - 1])) {
       // As if asked for just this: what a method does for a smaller tolerance is not part of it.
-      timed->set_limits(std::max(1e-15, 0.99 * watched.stop[e]), std::max(1, iterations));
+      timed->set_limits(tolerance_for(watched, e), std::max(1, iterations));
       result.summary = median_solve(*timed, system, x);
     }
     result.to[e] = time_to(iterations, watched.direct, result.summary);

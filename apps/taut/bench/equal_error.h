@@ -1,6 +1,6 @@
 #pragma once
 // Time and iterations until a method has come as near to the answer as wanted: the only fair comparison (each method's own stop rule
-// is in a norm of its own). Found in two runs: one watches the A-norm error after each iteration, the others are timed (median of five, for
+// is in a norm of its own). Found in two runs: one watches the A-norm error after each iteration, the others are timed (medians, for
 // each error) and stop after as many iterations. What a method does once per topology is not in the times; the analyses of CHOLMOD and PARDISO, which
 // the paper does in every step, are, but for cholmod_reused_analysis. `auto` has some solves to look around, and its own stop rule.
 
