@@ -43,6 +43,7 @@ Json row_json(const SolverRow& row, const Json& facts, double reference_ms) {
   put_finite(json, "relative_residual", s.relative_residual);
   json["memory_MB"] = s.memory_bytes / 1e6;
   json["precision"] = s.precision;
+  if (s.replaced) json["replaced"] = true;
   if (s.fallbacks > 0) json["fallbacks"] = s.fallbacks;
   return json;
 }

@@ -6,6 +6,9 @@
 // - The springs outside the core are taken out of it altogether, where the paper leaves their part of the diagonal: blocks outside are lumped
 //   (docs/mathematics.md, 5). So P <= A, smooth motions meet eigenvalues near 1, and the error at the end is proved: error_bound of the summary.
 //   For elements of two nodes; done where ρ is known. Where it fails (a pivot of the lumped matrix in double precision), nothing is lumped.
+// - Where last step's x was smooth, parallelograms stand in for springs outside the core: the other diagonals of a grid's cells. P <= A is lost then,
+//   the bound on the condition is (1 + 4 ρ_Q) (1 + 2 ρ_D), and iterations are fewer (docs/mathematics.md, 5, "Stand-ins";
+//   solve/replacement_choice.h). Needs LinearSystem::last and ::masses.
 // - Neither Ã nor P̃ is formed: products take A or blocks of it, the factorisation takes A's core blocks, and constrained nodes are looked at
 //   one by one (solve/full_space.h).
 // - Ordering and symbolic work are done once per topology and core, whatever contacts do and whatever SolverOptions::reuse_analysis
