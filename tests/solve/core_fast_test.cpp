@@ -144,9 +144,9 @@ TEST(CoreFast, ReplacesSpringsWhereMotionIsSmooth) {
   MaterialSheet sheet({.k_stretch = 60.0, .k_shear = 30.0, .motion = 0.0}, 5);
   sheet.hold_some();
   const std::vector<double> smooth = affine_motion(sheet);
-  std::vector<double> rough = smooth, x(sheet.b.size());
   Random random(6);
-  for (double& value : rough) value += random.uniform();
+  const std::vector<double> rough = random.vector(sheet.a.dofs());
+  std::vector<double> x(sheet.b.size());
   LinearSystem system = sheet.with_core(sheet.stretch);
   // What it is to find is smooth.
   multiply(sheet.a, smooth, sheet.b);

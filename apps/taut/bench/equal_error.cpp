@@ -69,9 +69,9 @@ Watched watch(const LinearSystem& system, const SolverOptions& options, std::spa
   return watched;
 }
 
-// The error asked for, or what is nearest to it and ends in the same iteration.
+// The error asked for, or what is nearest to it and ends in the same iteration (below what is reached there, the limit of iterations ends it).
 double tolerance_for(const Watched& watched, std::size_t e) {
-  return std::max({1e-15, std::min(wanted_errors[e], 0.99 * watched.before[e]), 1.01 * watched.stop[e]});
+  return std::max({1e-15, std::min(wanted_errors[e], 0.99 * watched.before[e]), 0.99 * watched.stop[e]});
 }
 
 // Of as many solves as take a second, at least five: of a machine that others use, a few milliseconds tell little. One where it takes long.
