@@ -51,9 +51,9 @@ struct PlainRows {
   const double* values;
   const Offset *value_start, *gathered_start;
   const Index *place, *block_start, *block_value;
-  const Index *lumped_start, *lumped;     // null: none is lumped
-  const Index* addend_start;              // null: nothing is replaced
-  const std::uint8_t* addend_count;
+  const Index *lumped_start, *lumped;  // null: none is lumped
+  const Index* addend_start;           // null: nothing is replaced
+  const Index* addend_count;
   const Replacement::Addend* addend;
 };
 

@@ -60,7 +60,7 @@ Replacement plan_replacement(std::span<const Parallelogram> replaced, const Bloc
 }
 
 Offset Replacement::bytes() const {
-  return static_cast<Offset>(addend.size() * sizeof(Addend) + row_start.size() * sizeof(Index) + count.size());
+  return static_cast<Offset>(addend.size() * sizeof(Addend) + (row_start.size() + count.size()) * sizeof(Index));
 }
 
 }  // namespace taut

@@ -19,7 +19,7 @@ struct Replacement {
     float factor;  // multiplies
   };
   std::vector<Index> row_start;     // per row of A: its addends, block by block as they are gathered from it
-  std::vector<std::uint8_t> count;  // per block of the layout: how many are its own
+  std::vector<Index> count;         // per block of the layout: how many are its own
   std::vector<Addend> addend;
 
   Offset bytes() const;
