@@ -83,7 +83,7 @@ TEST(BlockRemainder, KnowsWhatParallelogramsLeave) {
   const Eigen::MatrixXd a = dense(grid.a);
   for (const bool replaced : {false, true, false}) {
     remainder.set_replaced(replaced);
-    const Eigen::MatrixXd p = grid.without(kept, replaced ? std::span<const Parallelogram>(list) : std::span<const Parallelogram>());
+    const Eigen::MatrixXd p = dense_core(grid.a, kept, replaced ? std::span<const Parallelogram>(list) : std::span<const Parallelogram>());
     const std::vector<double> c = random.vector(grid.a.dofs()), r = random.vector(grid.a.dofs());
     std::vector<double> last = random.vector(grid.a.dofs()), q(c.size());
     const Eigen::VectorXd expected = as_eigen(r) + 0.3 * as_eigen(last), e = (a - p) * as_eigen(c);

@@ -1,5 +1,5 @@
-// A grid of unit masses and random springs to the twelve neighbours of a cloth's node, as a matrix of 3x3 blocks: what parallelograms stand
-// in for there, and the dense matrix that this makes.
+// A grid of unit masses and random springs to the twelve neighbours of a cloth's node, as a matrix of 3x3 blocks; and the dense matrix that leaving
+// springs out, or parallelograms in their place, makes of one.
 
 #pragma once
 
@@ -7,6 +7,25 @@
 #include "taut/linalg/parallelogram.h"
 
 namespace taut::test {
+
+// A without the springs that are not kept, and with the parallelograms in their place: from springs, not from how blocks are added.
+inline Eigen::MatrixXd dense_core(const BlockCsr& a, std::span<const std::uint8_t> kept, std::span<const Parallelogram> replaced) {
+  const BlockPattern& p = *a.pattern;
+  const Eigen::MatrixXd all = dense(a);
+  Eigen::MatrixXd result = all;
+  const auto spring = [&](Index i, Index j, const Mat3& b) {
+    result.block<3, 3>(3 * i, 3 * i) += b, result.block<3, 3>(3 * j, 3 * j) += b;
+    result.block<3, 3>(3 * i, 3 * j) -= b, result.block<3, 3>(3 * j, 3 * i) -= b;
+  };
+  for (Index i = 0; i < p.rows(); ++i)
+    for (Index k = p.row_start[i]; k < p.row_start[i + 1]; ++k)
+      if (const Index j = p.column[k]; j > i && !kept[k]) spring(i, j, all.block<3, 3>(3 * i, 3 * j));
+  for (const Parallelogram& of : replaced) {
+    const Mat3 b = -all.block<3, 3>(3 * of.a, 3 * of.c);
+    spring(of.a, of.b, b), spring(of.b, of.c, b), spring(of.c, of.d, b), spring(of.d, of.a, b), spring(of.b, of.d, -b);
+  }
+  return result;
+}
 
 struct SpringGrid {
   Index nu, nv;
@@ -42,25 +61,6 @@ struct SpringGrid {
   void add(Index i, Index j, const Mat3& block) {
     for (Index r = 0; r < 3; ++r)
       for (Index c = 0; c < 3; ++c) a.block(i, a.pattern->find(i, j))[r * a.pattern->width(i) + c] += block(r, c);
-  }
-
-  // A without the springs that are not kept, and with the parallelograms in their place: from springs, not from how blocks are added.
-  Eigen::MatrixXd without(std::span<const std::uint8_t> kept, std::span<const Parallelogram> replaced) const {
-    const BlockPattern& p = *a.pattern;
-    const Eigen::MatrixXd all = dense(a);
-    Eigen::MatrixXd result = all;
-    const auto spring = [&](Index i, Index j, const Mat3& b) {
-      result.block<3, 3>(3 * i, 3 * i) += b, result.block<3, 3>(3 * j, 3 * j) += b;
-      result.block<3, 3>(3 * i, 3 * j) -= b, result.block<3, 3>(3 * j, 3 * i) -= b;
-    };
-    for (Index i = 0; i < p.rows(); ++i)
-      for (Index k = p.row_start[i]; k < p.row_start[i + 1]; ++k)
-        if (const Index j = p.column[k]; j > i && !kept[k]) spring(i, j, all.block<3, 3>(3 * i, 3 * j));
-    for (const Parallelogram& of : replaced) {
-      const Mat3 b = -all.block<3, 3>(3 * of.a, 3 * of.c);
-      spring(of.a, of.b, b), spring(of.b, of.c, b), spring(of.c, of.d, b), spring(of.d, of.a, b), spring(of.b, of.d, -b);
-    }
-    return result;
   }
 };
 

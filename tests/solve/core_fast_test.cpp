@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "linalg/spring_grid.h"
 #include "solve/constrained_case.h"
 #include "solve/material_sheet.h"
 #include "taut/linalg/block_cholesky.h"
@@ -62,24 +63,6 @@ std::vector<double> affine_motion(const MaterialSheet& sheet) {
   return x;
 }
 
-// P: without the blocks outside the core, lumped, and with springs for the parallelograms.
-Eigen::MatrixXd dense_core(const MaterialSheet& sheet, std::span<const std::uint8_t> core, std::span<const Parallelogram> replaced) {
-  const BlockPattern& pattern = *sheet.a.pattern;
-  const Eigen::MatrixXd a = dense(sheet.a);
-  Eigen::MatrixXd p = a;
-  const auto spring = [&](Index i, Index j, const Mat3& b) {
-    p.block<3, 3>(3 * i, 3 * i) += b, p.block<3, 3>(3 * j, 3 * j) += b, p.block<3, 3>(3 * i, 3 * j) -= b, p.block<3, 3>(3 * j, 3 * i) -= b;
-  };
-  for (Index i = 0; i < pattern.rows(); ++i)
-    for (Index k = pattern.row_start[i]; k < pattern.row_start[i + 1]; ++k)
-      if (const Index j = pattern.column[k]; j > i && !core[k]) spring(i, j, a.block<3, 3>(3 * i, 3 * j));
-  for (const Parallelogram& of : replaced) {
-    const Mat3 b = -a.block<3, 3>(3 * of.a, 3 * of.c);
-    spring(of.a, of.b, b), spring(of.b, of.c, b), spring(of.c, of.d, b), spring(of.d, of.a, b), spring(of.b, of.d, -b);
-  }
-  return p;
-}
-
 // Where ρ is known the springs outside the core are taken out of it altogether, or parallelograms stand in for them: the same conjugate
 // gradients as on a dense matrix made so; its eigenvalues within their bounds.
 class CoreFastSteps : public testing::TestWithParam<bool> {};
@@ -102,7 +85,7 @@ TEST_P(CoreFastSteps, AreThoseOfTheSpringsInTheCore) {
       const auto parallelograms = same_core.parallelograms();
       ASSERT_FALSE(parallelograms.empty());
       const Eigen::MatrixXd p =
-          dense_core(sheet, same_core.analyzed_blocks(), GetParam() ? parallelograms : std::span<const Parallelogram>());
+          dense_core(sheet.a, same_core.analyzed_blocks(), GetParam() ? parallelograms : std::span<const Parallelogram>());
       const Eigen::MatrixXd u = sheet.dense_u(), a = u.transpose() * dense(sheet.a) * u;
       const Eigen::LLT<Eigen::MatrixXd> factor(u.transpose() * p * u);
       ASSERT_EQ(factor.info(), Eigen::Success);
