@@ -15,11 +15,14 @@ TYPED_TEST_SUITE(FrontKernelsOf, Precisions);
 
 template <class T>
 double solution_error(const BlockCsr& a, const FrontKernels<T>& kernels, Random& random) {
-  const AnalyzedGraph graph = analyzed_graph(*a.pattern);
-  const SupernodeTree tree = make_supernode_tree(graph.graph, nested_dissection(graph.graph), graph.weight);
-  NumericFactor<T> factor(tree, graph, kernels);
+  AnalyzedGraph all = analyzed_graph(*a.pattern);
+  std::vector<Index> condensed = condensed_nodes(all);
+  CondensedGraph graph = condensed_graph(std::move(all), std::move(condensed));
+  const SupernodeTree tree = make_supernode_tree(graph.rest.graph, nested_dissection(graph.rest.graph), graph.rest.weight);
+  const std::vector<Index> condensed_at = assign_condensed(graph, tree);
+  NumericFactor<T> factor(tree, graph, condensed_at, kernels);
   std::vector<Index> start;
-  for (const Index i : tree.order) start.push_back(a.pattern->dof_start[graph.node[i]]);
+  for (const Index i : factor.layout().node) start.push_back(a.pattern->dof_start[i]);
   const std::vector<double> b = random.vector(a.dofs());
   std::vector<double> x(b.size());
   EXPECT_TRUE(factor.factorize({a, {}, true}, start, {}).ok());

@@ -14,8 +14,9 @@ namespace taut {
 
 struct BlockCholesky::Implementation {
   CholeskyPrecision precision;
-  AnalyzedGraph graph;
-  SupernodeTree tree;
+  CondensedGraph graph;
+  SupernodeTree tree;               // of the nodes that are not condensed
+  std::vector<Index> condensed_at;  // the supernode of each condensed one
   std::unique_ptr<NumericFactor<float>> single_factor;
   std::unique_ptr<NumericFactor<double>> double_factor;
   bool single = false;  // which of them holds the factor
@@ -33,15 +34,16 @@ struct BlockCholesky::Implementation {
   std::vector<Index> permutation;
 
   void number_unknowns(const BlockPattern& p) {
-    start.resize(tree.order.size());
-    permuted_start.resize(tree.order.size());
+    start.clear();
+    permuted_start.clear();
     permutation.clear();
-    for (std::size_t k = 0; k < start.size(); ++k) {
-      const Index node = graph.node[tree.order[k]];
-      start[k] = p.dof_start[node];
-      permuted_start[k] = static_cast<Index>(permutation.size());
-      for (Index r = 0; r < p.dim(node); ++r) permutation.push_back(start[k] + r);
-    }
+    const auto add = [&](Index node) {
+      start.push_back(p.dof_start[node]);
+      permuted_start.push_back(static_cast<Index>(permutation.size()));
+      for (Index r = 0; r < p.dim(node); ++r) permutation.push_back(p.dof_start[node] + r);
+    };
+    for (const Index i : graph.condensed) add(graph.all.node[i]);
+    for (const Index i : tree.order) add(graph.rest.node[i]);
   }
 
   // Either factor, as f(factor).
@@ -52,8 +54,8 @@ struct BlockCholesky::Implementation {
 
   void make_factor(bool in_single) {
     single = in_single;
-    if (single && !single_factor) single_factor = std::make_unique<NumericFactor<float>>(tree, graph);
-    if (!single && !double_factor) double_factor = std::make_unique<NumericFactor<double>>(tree, graph);
+    if (single && !single_factor) single_factor = std::make_unique<NumericFactor<float>>(tree, graph, condensed_at);
+    if (!single && !double_factor) double_factor = std::make_unique<NumericFactor<double>>(tree, graph, condensed_at);
   }
 
   // Single precision sees vectors whose largest entry is about 1: what is left of a residual may be far below its range.
@@ -118,8 +120,8 @@ struct BlockCholesky::Implementation {
 
   void take_blocks(const BlockPattern& p, std::span<const std::uint8_t> mask, BlocksLeftOut left_out) {
     if (left_out == BlocksLeftOut::without_place) {
-      analyzed_blocks = covered_blocks(p, graph, tree);
-      graph = analyzed_graph(p, analyzed_blocks);
+      analyzed_blocks = covered_blocks(p, mask, graph, tree);
+      graph = condensed_graph(analyzed_graph(p, analyzed_blocks), std::move(graph.condensed));
       return;
     }
     analyzed_blocks.assign(mask.begin(), mask.end());
@@ -133,12 +135,15 @@ struct BlockCholesky::Implementation {
     single_factor = nullptr;
     double_factor = nullptr;
     try {
-      graph = analyzed_graph(p, mask);
-      tree = make_supernode_tree(graph.graph, elimination_order(graph.graph, graph.weight), graph.weight);
+      AnalyzedGraph all = analyzed_graph(p, mask);
+      std::vector<Index> condensed = condensed_nodes(all);
+      graph = condensed_graph(std::move(all), std::move(condensed));
+      tree = make_supernode_tree(graph.rest.graph, elimination_order(graph.rest.graph, graph.rest.weight), graph.rest.weight);
       take_blocks(p, mask, left_out);
-      unanalyzed = unanalyzed_blocks(p, analyzed_blocks);
+      condensed_at = assign_condensed(graph, tree);
       parallelograms.clear();
       if (!mask.empty() && p.uniform_dim == 3) parallelograms = taut::parallelograms(p, mask, analyzed_blocks);
+      unanalyzed = unanalyzed_blocks(p, analyzed_blocks, parallelograms);
       make_factor(precision != CholeskyPrecision::double_precision);
     } catch (const std::bad_alloc&) {
       return {Outcome::out_of_memory, "Cholesky (block), analysis: not enough memory"};
@@ -195,7 +200,7 @@ Status BlockCholesky::factorize(const BlockCsr& a) {
   Implementation& me = *implementation_;
   assert(me.single_factor || me.double_factor);
   if (me.pattern != a.pattern) {
-    if (const std::string mismatch = me.graph.mismatch(*a.pattern); !mismatch.empty())
+    if (const std::string mismatch = me.graph.all.mismatch(*a.pattern); !mismatch.empty())
       return {Outcome::breakdown, "Cholesky (block): the matrix does not fit the analysed pattern: " + mismatch};
     me.number_unknowns(*a.pattern);
     me.pattern = a.pattern;
@@ -249,8 +254,14 @@ BlockCholeskyStatistics BlockCholesky::block_statistics() const {
   if (!me.single_factor && !me.double_factor) return {};
   BlockCholeskyStatistics s;
   s.supernodes = me.tree.supernodes();
+  s.condensed = static_cast<Index>(me.graph.condensed.size());
   s.factor_entries = me.tree.factor_entries;
   s.flops = me.tree.factor_flops;
+  for (const Index i : me.graph.condensed) {
+    const double below = 3.0 * (me.graph.all.graph.start[i + 1] - me.graph.all.graph.start[i]);
+    s.factor_entries += 6.0 + 3.0 * below;
+    for (const double own : {1.0, 2.0, 3.0}) s.flops += (below + own) * (below + own);
+  }
   s.single_precision = me.single;
   s.fallbacks = me.fallbacks;
   me.with_factor([&](const auto& factor) {

@@ -54,7 +54,8 @@ struct BlocksOutside {
 enum class CholeskyPrecision { double_precision, single_precision, automatic };
 
 struct BlockCholeskyStatistics {
-  Index supernodes = 0;
+  Index condensed = 0;          // nodes that are eliminated before all others, each by itself (block_cholesky/condensation.h)
+  Index supernodes = 0;         // of the others
   double factor_entries = 0.0;  // of L without padding and without what amalgamation adds
   double flops = 0.0;           // multiplications and additions for those entries
   double padded_flops = 0.0;    // what is really done

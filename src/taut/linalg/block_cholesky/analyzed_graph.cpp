@@ -28,12 +28,17 @@ AnalyzedGraph analyzed_graph(const BlockPattern& pattern, std::span<const std::u
   return result;
 }
 
-UnanalyzedBlocks unanalyzed_blocks(const BlockPattern& pattern, std::span<const std::uint8_t> mask) {
+UnanalyzedBlocks unanalyzed_blocks(const BlockPattern& pattern, std::span<const std::uint8_t> mask, std::span<const Parallelogram> replaceable) {
+  std::vector<std::uint8_t> is_replaceable(mask.size(), 0);
+  for (const Parallelogram& p : replaceable) is_replaceable[p.block] = is_replaceable[p.opposite] = 1;
   UnanalyzedBlocks result;
   result.row_start.push_back(0);
   for (Index i = 0; i < pattern.rows(); ++i) {
-    for (Index k = pattern.row_start[i]; k < pattern.row_start[i + 1]; ++k)
-      if (!mask[k] && k != pattern.diagonal[i]) result.value.push_back(pattern.block_offset[k]);
+    for (const std::uint8_t last : {0, 1}) {
+      if (last) result.row_split.push_back(static_cast<Index>(result.value.size()));
+      for (Index k = pattern.row_start[i]; k < pattern.row_start[i + 1]; ++k)
+        if (!mask[k] && k != pattern.diagonal[i] && is_replaceable[k] == last) result.value.push_back(pattern.block_offset[k]);
+    }
     result.row_start.push_back(static_cast<Index>(result.value.size()));
   }
   return result;

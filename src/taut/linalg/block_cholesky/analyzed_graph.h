@@ -8,6 +8,7 @@
 
 #include "taut/linalg/block_csr.h"
 #include "taut/linalg/node_ordering.h"
+#include "taut/linalg/parallelogram.h"
 
 namespace taut {
 
@@ -27,11 +28,14 @@ struct AnalyzedGraph {
 // mask: one byte per block of the pattern, 0 for blocks that are left out; empty: all are in. Diagonal blocks always are.
 AnalyzedGraph analyzed_graph(const BlockPattern& pattern, std::span<const std::uint8_t> mask = {});
 
-// The blocks of the pattern that are left out, row by row: the first column of each in its row of A.
+// The blocks of the pattern that are left out, row by row: the first column of each in its row of A. In a row, those that something can stand
+// in for (linalg/parallelogram.h) come last, from row_split on.
 struct UnanalyzedBlocks {
-  std::vector<Index> row_start, value;
-  std::span<const Index> row(Index i) const { return {value.data() + row_start[i], value.data() + row_start[i + 1]}; }
+  std::vector<Index> row_start, row_split, value;
+  std::span<const Index> row(Index i, bool without_replaced) const {
+    return {value.data() + row_start[i], value.data() + (without_replaced ? row_split[i] : row_start[i + 1])};
+  }
 };
-UnanalyzedBlocks unanalyzed_blocks(const BlockPattern& pattern, std::span<const std::uint8_t> mask);
+UnanalyzedBlocks unanalyzed_blocks(const BlockPattern& pattern, std::span<const std::uint8_t> mask, std::span<const Parallelogram> replaceable);
 
 }  // namespace taut

@@ -1,8 +1,7 @@
 #include "taut/linalg/block_cholesky/factor_layout.h"
 
 #include <algorithm>
-
-#include "taut/linalg/block_cholesky/elimination_tree.h"
+#include <cassert>
 
 namespace taut {
 
@@ -10,32 +9,41 @@ namespace {
 
 class LayoutBuilder {
  public:
-  LayoutBuilder(const SupernodeTree& tree, const AnalyzedGraph& analyzed, const KernelSizes& sizes)
-      : tree_(tree), analyzed_(analyzed), sizes_(sizes) {}
+  LayoutBuilder(const SupernodeTree& tree, const CondensedGraph& graph, std::span<const Index> condensed_at, const KernelSizes& sizes)
+      : tree_(tree), graph_(graph), condensed_at_(condensed_at), sizes_(sizes), condensed_(static_cast<Index>(graph.condensed.size())) {}
 
   FactorLayout build() {
     layout_.front.resize(static_cast<std::size_t>(tree_.supernodes()));
-    layout_.node_column.resize(tree_.order.size());
+    layout_.condensed = condensed_;
     layout_.block_start.assign(1, 0);
-    for (const Index i : tree_.order) {
-      layout_.node.push_back(analyzed_.node[i]);
-      layout_.node_weight.push_back(analyzed_.weight[i]);
-    }
+    number_nodes();
     link_children();
-    place_ = inverse_permutation(tree_.order);
-    layout_.place.assign(static_cast<std::size_t>(analyzed_.rows), -1);
-    for (std::size_t k = 0; k < layout_.node.size(); ++k) layout_.place[layout_.node[k]] = static_cast<Index>(k);
-    row_of_.assign(tree_.order.size(), -1);
+    row_of_.assign(layout_.node.size(), -1);
+    for (Index k = 0; k < condensed_; ++k) list_condensed_blocks(k);
     for (Index s = 0; s < tree_.supernodes(); ++s) {
       shape_front(s);
       place_blocks(s);
+      take_condensed(s);
       for (Index c = layout_.front[s].child_begin; c < layout_.front[s].child_end; ++c)
         map_rows(layout_.child[c], layout_.front[s].shape.columns);
     }
+    if (condensed_ > 0) pair_condensed();
     return std::move(layout_);
   }
 
  private:
+  void number_nodes() {
+    const auto add = [&](const AnalyzedGraph& of, Index i) {
+      layout_.node.push_back(of.node[i]);
+      layout_.node_weight.push_back(of.weight[i]);
+    };
+    for (const Index i : graph_.condensed) add(graph_.all, i);
+    for (const Index i : tree_.order) add(graph_.rest, i);
+    layout_.place.assign(static_cast<std::size_t>(graph_.all.rows), -1);
+    for (std::size_t k = 0; k < layout_.node.size(); ++k) layout_.place[layout_.node[k]] = static_cast<Index>(k);
+    layout_.node_column.assign(layout_.node.size(), 0);
+  }
+
   void link_children() {
     const Index n = tree_.supernodes();
     std::vector<Index> next(static_cast<std::size_t>(n) + 1, 0);
@@ -56,7 +64,7 @@ class LayoutBuilder {
   void shape_front(Index s) {
     Front& f = layout_.front[s];
     f.parent = tree_.parent[s];
-    f.first_node = tree_.first[s], f.last_node = tree_.first[s + 1];
+    f.first_node = condensed_ + tree_.first[s], f.last_node = condensed_ + tree_.first[s + 1];
     for (Index k = f.first_node; k < f.last_node; ++k) f.pivots += weight_at(k);
     f.shape.slab_rows = sizes_.slab_rows;
     f.shape.columns = (f.pivots + sizes_.column_group - 1) / sizes_.column_group * sizes_.column_group;
@@ -67,9 +75,9 @@ class LayoutBuilder {
       next += weight_at(k);
     }
     f.shape.rows = f.shape.columns;
-    for (const Index k : tree_.rows(s)) {
-      row_of_[k] = f.shape.rows;
-      f.shape.rows += weight_at(k);
+    for (const Index row : tree_.rows(s)) {
+      row_of_[condensed_ + row] = f.shape.rows;
+      f.shape.rows += weight_at(condensed_ + row);
     }
     f.packed = layout_.packed_size;
     f.vector = layout_.vector_size;
@@ -79,16 +87,66 @@ class LayoutBuilder {
     layout_.flops += n * n * n / 3.0 + n * n * m + n * m * m;
   }
 
+  void list_condensed_blocks(Index k) {
+    const AnalyzedGraph& all = graph_.all;
+    const Index i = graph_.condensed[k];
+    layout_.gathered_start.push_back(layout_.gathered_size);
+    const auto add = [&](Index place, Index value) {
+      layout_.block.push_back({0, 0, place, 0});
+      layout_.block_value.push_back(value);
+      layout_.gathered_size += 9;
+    };
+    add(k, all.diagonal[i]);
+    for (Index e = all.graph.start[i]; e < all.graph.start[i + 1]; ++e) add(layout_.place[all.node[all.graph.neighbour[e]]], all.value[e]);
+    layout_.block_start.push_back(static_cast<Index>(layout_.block.size()));
+    const double neighbours = all.graph.start[i + 1] - all.graph.start[i];
+    layout_.flops += 27.0 * neighbours * (neighbours + 1.0) / 2.0 + 18.0 * neighbours;
+  }
+
   void place_blocks(Index s) {
+    const AnalyzedGraph& rest = graph_.rest;
     for (Index k = layout_.front[s].first_node; k < layout_.front[s].last_node; ++k) {
-      const NodeGraph& graph = analyzed_.graph;
-      const Index i = tree_.order[k];
+      const Index i = tree_.order[k - condensed_];
       layout_.gathered_start.push_back(layout_.gathered_size);
-      add_block(layout_.front[s].shape, k, k, analyzed_.diagonal[i]);
-      for (Index e = graph.start[i]; e < graph.start[i + 1]; ++e)
-        if (const Index other = place_[graph.neighbour[e]]; other > k) add_block(layout_.front[s].shape, k, other, analyzed_.value[e]);
+      add_block(layout_.front[s].shape, k, k, rest.diagonal[i]);
+      for (Index e = rest.graph.start[i]; e < rest.graph.start[i + 1]; ++e)
+        if (const Index other = layout_.place[rest.node[rest.graph.neighbour[e]]]; other > k)
+          add_block(layout_.front[s].shape, k, other, rest.value[e]);
       layout_.block_start.push_back(static_cast<Index>(layout_.block.size()));
     }
+  }
+
+  void take_condensed(Index s) {
+    Front& f = layout_.front[s];
+    f.first_condensed = s == 0 ? 0 : layout_.front[s - 1].last_condensed;
+    f.last_condensed = f.first_condensed;
+    while (f.last_condensed < condensed_ && condensed_at_[f.last_condensed] == s) ++f.last_condensed;
+    for (Index e = layout_.block_start[f.first_condensed]; e < layout_.block_start[f.last_condensed]; ++e)
+      layout_.condensed_row.push_back(row_of_[layout_.block[e].place]);
+  }
+
+  // What condensed nodes leave to the others.
+  void pair_condensed() {
+    struct Planned {
+      Index block;
+      CondensedPair pair;
+    };
+    std::vector<Planned> planned;
+    for (Index i = 0; i < condensed_; ++i) {
+      const Index begin = layout_.block_start[i] + 1, end = layout_.block_start[i + 1];
+      for (Index e = begin; e < end; ++e) {
+        const Index j = layout_.block[e].place;
+        for (Index f = begin; f < end; ++f)
+          if (layout_.block[f].place >= j) planned.push_back({find_block(layout_, j, layout_.block[f].place), {e, f}});
+      }
+    }
+    layout_.pair_start.assign(layout_.block.size() + 1, 0);
+    std::ranges::stable_sort(planned, {}, &Planned::block);
+    for (const Planned& p : planned) {
+      ++layout_.pair_start[p.block + 1];
+      layout_.pair.push_back(p.pair);
+    }
+    for (std::size_t e = 0; e < layout_.block.size(); ++e) layout_.pair_start[e + 1] += layout_.pair_start[e];
   }
 
   void add_block(const FrontShape& shape, Index node, Index place, Index value) {
@@ -105,8 +163,8 @@ class LayoutBuilder {
     child.spread_begin = static_cast<Index>(layout_.spread.size());
     child.run_split = child.spread_split = -1;
     Index from = child.shape.columns;
-    for (const Index k : tree_.rows(c))
-      for (Index to = row_of_[k]; to < row_of_[k] + weight_at(k); ++to, ++from) {
+    for (const Index row : tree_.rows(c))
+      for (Index k = condensed_ + row, to = row_of_[k]; to < row_of_[k] + weight_at(k); ++to, ++from) {
         append_to_runs(from, to, child.run_begin, parent_columns);
         append_to_spreads(from, to, child.spread_begin);
         if (to < parent_columns || child.run_split >= 0) continue;
@@ -140,23 +198,32 @@ class LayoutBuilder {
   }
 
   const SupernodeTree& tree_;
-  const AnalyzedGraph& analyzed_;
+  const CondensedGraph& graph_;
+  const std::span<const Index> condensed_at_;
   const KernelSizes sizes_;
+  const Index condensed_;
   FactorLayout layout_;
-  std::vector<Index> place_;   // of each node in the order
   std::vector<Index> row_of_;  // by place in the order: first row in the front at hand
 };
 
 }  // namespace
 
-FactorLayout make_factor_layout(const SupernodeTree& tree, const AnalyzedGraph& analyzed, const KernelSizes& sizes) {
-  return LayoutBuilder(tree, analyzed, sizes).build();
+FactorLayout make_factor_layout(const SupernodeTree& tree, const CondensedGraph& graph, std::span<const Index> condensed_at, const KernelSizes& sizes) {
+  return LayoutBuilder(tree, graph, condensed_at, sizes).build();
+}
+
+Index find_block(const FactorLayout& layout, Index place, Index other) {
+  Index e = layout.block_start[place];
+  while (e < layout.block_start[place + 1] && layout.block[e].place != other) ++e;
+  assert(e < layout.block_start[place + 1] && "a block without a place");
+  return e;
 }
 
 Offset FactorLayout::bytes() const {
   const auto size_of = [](const auto& v) { return static_cast<Offset>(v.size() * sizeof(v[0])); };
   return size_of(front) + size_of(child) + size_of(run) + size_of(spread) + size_of(node) + size_of(node_weight) + size_of(node_column) +
-         size_of(place) + size_of(block_start) + size_of(block) + size_of(block_value) + size_of(gathered_start) + size_of(task);
+         size_of(place) + size_of(block_start) + size_of(block) + size_of(block_value) + size_of(gathered_start) + size_of(condensed_row) +
+         size_of(pair_start) + size_of(pair) + size_of(task);
 }
 
 }  // namespace taut

@@ -3,8 +3,9 @@
 // parents.
 //
 // Every supernode is a front (front_kernels.h). Its rows are padding and its pivots, then the unknowns of its row nodes, in the order of
-// elimination.
+// elimination. Nodes that are condensed (condensation.h) come first in that order, before those of the fronts.
 //
+//   gathered A's blocks in the order of elimination; those of condensed nodes become their G, in the diagonal block's place, and U
 //   scratch  of each thread, for the task at hand: panels, which live while their front is eliminated, and updates, which live until the
 //            parent has taken them in; later ones reuse the place, so all of this stays in a cache
 //   arena    the same of the fronts that are tasks of their own, and the updates that tasks hand on: places of tasks that may run at the
@@ -19,7 +20,7 @@
 #include <vector>
 
 #include "taut/base/task_tree.h"
-#include "taut/linalg/block_cholesky/analyzed_graph.h"
+#include "taut/linalg/block_cholesky/condensation.h"
 #include "taut/linalg/block_cholesky/front_kernels.h"
 #include "taut/linalg/block_cholesky/supernodes.h"
 
@@ -30,6 +31,7 @@ struct Front {
   Index parent = -1;
   Index pivots = 0;                      // unknowns, without padding
   Index first_node = 0, last_node = 0;   // places of its pivot nodes in the order
+  Index first_condensed = 0, last_condensed = 0;  // places of the condensed nodes that the solves take in here
   Index child_begin = 0, child_end = 0;  // into FactorLayout::child
   // Into FactorLayout::run and ::spread: how its rows below the pivots lie in its parent. Runs before the split are pivots there, spreads
   // before theirs hold nothing else.
@@ -54,7 +56,13 @@ struct FrontTask {
   bool shared = false;
 };
 
+// Blocks U_ij and U_ik, whose product enters the block of j and k.
+struct CondensedPair {
+  Index first, second;
+};
+
 struct FactorLayout {
+  Index condensed = 0;  // so many nodes at the begin of the order
   std::vector<Front> front;
   std::vector<Index> child;  // ascending for each front: the order in which updates are added
   std::vector<RowRun> run;
@@ -64,13 +72,17 @@ struct FactorLayout {
   std::vector<Index> node_column;  // per place in the order: first column of the node in its front
   std::vector<Index> place;        // per row of A: of its node in the order, or -1
   std::vector<Index> block_start;  // per place in the order, into block and block_value; nodes + 1
-  std::vector<BlockPlace> block;   // the node's diagonal block first
-  std::vector<Index> block_value;     // per block: its first column in the node's row of the analysed matrix
+  std::vector<BlockPlace> block;   // the node's diagonal block first, then those of later nodes
+  std::vector<Index> block_value;      // per block: its first column in the node's row of the analysed matrix; -1: it has none there
   std::vector<Offset> gathered_start;  // per place in the order: where its blocks begin among those gathered from A
+  // Where nodes are condensed, and then a gathered block e begins at 9 e:
+  std::vector<Index> condensed_row;   // per block of condensed nodes: where the other node begins in the vector of the front that takes it in
+  std::vector<Index> pair_start;      // per block, into pair; blocks + 1
+  std::vector<CondensedPair> pair;    // first: at the node that has the block
   std::vector<FrontTask> task;
   TaskTree task_tree;
   Offset arena_size = 0, scratch_size = 0, packed_size = 0, vector_size = 0, gathered_size = 0;  // elements
-  double flops = 0.0;                                       // of the padded fronts
+  double flops = 0.0;                                       // of the padded fronts and the condensed nodes
 
   Offset bytes() const;
 };
@@ -81,7 +93,11 @@ struct KernelSizes {
   Offset (*packed_size)(const FrontShape&);
 };
 
-FactorLayout make_factor_layout(const SupernodeTree& tree, const AnalyzedGraph& analyzed, const KernelSizes& sizes);
+// The tree is of the nodes that are not condensed. condensed_at: see assign_condensed.
+FactorLayout make_factor_layout(const SupernodeTree& tree, const CondensedGraph& graph, std::span<const Index> condensed_at, const KernelSizes& sizes);
+
+// The block of two nodes that has a place, at the one that is eliminated first (asserted).
+Index find_block(const FactorLayout& layout, Index place, Index other);
 
 // Tasks and places in the arena for a number of threads.
 void plan_tasks(FactorLayout& layout, int threads);

@@ -27,16 +27,16 @@ typedef double Doubles __attribute__((vector_size(32), aligned(8), may_alias));
 struct BlockSum {
   Doubles row[3];
 
+  TAUT_ALWAYS_INLINE BlockSum() : row{} {}
   TAUT_ALWAYS_INLINE BlockSum(const double* from, Index width) {
     for (Index j = 0; j < 3; ++j) row[j] = *reinterpret_cast<const Doubles*>(from + j * width);
   }
   TAUT_ALWAYS_INLINE void add(const double* from, Index width) {
     for (Index j = 0; j < 3; ++j) row[j] += *reinterpret_cast<const Doubles*>(from + j * width);
   }
-  TAUT_ALWAYS_INLINE void add(const Replacement::Addend& addend, const double* values) {
-    const double f = addend.factor;
-    const Doubles factor = {f, f, f, f};
-    for (Index j = 0; j < 3; ++j) row[j] += factor * *reinterpret_cast<const Doubles*>(values + addend.value + j * addend.width);
+  TAUT_ALWAYS_INLINE void add(double factor, const BlockSum& other) {
+    const Doubles f = {factor, factor, factor, factor};
+    for (Index j = 0; j < 3; ++j) row[j] += f * other.row[j];
   }
   template <class T>
   TAUT_ALWAYS_INLINE void write(T* to) const {
@@ -51,9 +51,10 @@ struct PlainRows {
   const double* values;
   const Offset *value_start, *gathered_start;
   const Index *place, *block_start, *block_value;
-  const Index *lumped_start, *lumped;  // null: none is lumped
+  const Index *lumped_start, *lumped_end, *lumped;  // null: none is lumped
   const Index* addend_start;           // null: nothing is replaced
   const Index* addend_count;
+  const float* addend_factor;
   const Replacement::Addend* addend;
 };
 
@@ -75,11 +76,15 @@ TAUT_ALWAYS_INLINE void gather_plain_row(const PlainRows& rows, Index i, T* gath
   const Index begin = rows.block_start[k], end = rows.block_start[k + 1];
   const Replacement::Addend* addend = rows.addend_start ? rows.addend + rows.addend_start[i] : nullptr;
   for (Index e = begin; e < end; ++e, to += 9) {
-    BlockSum sum(row + rows.block_value[e], width);
+    const Index value = rows.block_value[e];
+    BlockSum sum = value >= 0 ? BlockSum(row + value, width) : BlockSum();
     if (e == begin && rows.lumped)
-      for (Index l = rows.lumped_start[i]; l < rows.lumped_start[i + 1]; ++l) sum.add(row + rows.lumped[l], width);
-    if (addend)
-      for (const Replacement::Addend* stop = addend + rows.addend_count[e]; addend < stop; ++addend) sum.add(*addend, rows.values);
+      for (Index l = rows.lumped_start[i]; l < rows.lumped_end[i]; ++l) sum.add(row + rows.lumped[l], width);
+    if (addend && rows.addend_count[e] > 0) {
+      BlockSum added;
+      for (const Replacement::Addend* stop = addend + rows.addend_count[e]; addend < stop; ++addend) added.add(row + addend->value, addend->width);
+      sum.add(rows.addend_factor[e], added);
+    }
     sum.write(to);
   }
 }
@@ -115,7 +120,7 @@ void NumericFactor<T>::gather_row(const FactorSource& source, Index k) {
     for (Index j = 0; j < dim && value >= 0; ++j)
       for (Index i = 0; i < p.dim(layout_.node[other]); ++i) to[j * other_weight + i] = static_cast<T>(row[j * width + value + i]);
     if (e == layout_.block_start[k] && source.lumped)
-      for (const Index lumped : source.lumped->row(node))
+      for (const Index lumped : source.lumped->row(node, !source.replaced.empty()))
         for (Index j = 0; j < dim; ++j)
           for (Index i = 0; i < dim; ++i) to[j * other_weight + i] += static_cast<T>(row[j * width + lumped + i]);
     to += size;
@@ -128,10 +133,11 @@ void NumericFactor<T>::add_replaced(const FactorSource& source, Index row) {
   const Index k = layout_.place[row];
   T* to = gathered_.data() + layout_.gathered_start[k];
   const Replacement::Addend* addend = replacement_.addend.data() + replacement_.row_start[row];
+  const double* values = source.a.values.data() + source.a.pattern->value_start[row];
   for (Index e = layout_.block_start[k]; e < layout_.block_start[k + 1]; ++e, to += 9)
     for (const auto* stop = addend + replacement_.count[e]; addend < stop; ++addend)
       for (Index entry = 0; entry < 9; ++entry)
-        to[entry] += static_cast<T>(addend->factor * source.a.values[addend->value + entry / 3 * addend->width + entry % 3]);
+        to[entry] += replacement_.factor[e] * static_cast<T>(values[addend->value + entry / 3 * addend->width + entry % 3]);
 }
 
 template <class T>
@@ -146,9 +152,11 @@ void NumericFactor<T>::gather(const FactorSource& source) {
                        layout_.block_start.data(),
                        layout_.block_value.data(),
                        lumped ? lumped->row_start.data() : nullptr,
+                       lumped ? (is_replaced ? lumped->row_split.data() : lumped->row_start.data() + 1) : nullptr,
                        lumped ? lumped->value.data() : nullptr,
                        is_replaced ? replacement_.row_start.data() : nullptr,
                        replacement_.count.data(),
+                       replacement_.factor.data(),
                        replacement_.addend.data()};
   // The last row ends where A does: nothing may be read behind it.
   const Index plain_end = is_plain ? p.rows() - 1 : 0;
@@ -161,6 +169,7 @@ void NumericFactor<T>::gather(const FactorSource& source) {
         gather_row(source, layout_.place[row]);
         if (is_replaced) add_replaced(source, row);
       }
+      if (layout_.condensed > 0) condense_rows(i, stop);
       if (source.visit) (*source.visit)(i, stop);
     }
   });

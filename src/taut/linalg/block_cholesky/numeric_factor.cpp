@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 #include "taut/base/parallel.h"
 #include "taut/base/simd.h"
@@ -12,15 +13,17 @@
 namespace taut {
 
 template <class T>
-NumericFactor<T>::NumericFactor(const SupernodeTree& tree, const AnalyzedGraph& graph, const FrontKernels<T>& kernels)
+NumericFactor<T>::NumericFactor(const SupernodeTree& tree, const CondensedGraph& graph, std::span<const Index> condensed_at, const FrontKernels<T>& kernels)
     : kernels_(kernels),
-      layout_(make_factor_layout(tree, graph, {kernels_.lanes, kernels_.slab_rows, kernels_.column_group, kernels_.packed_size})) {
+      layout_(make_factor_layout(tree, graph, condensed_at, {kernels_.lanes, kernels_.slab_rows, kernels_.column_group, kernels_.packed_size})) {
   gathered_ = AlignedArray<T>(layout_.gathered_size + read_too_many);
   packed_ = AlignedArray<T>(layout_.packed_size);
   vectors_[0] = AlignedArray<T>(layout_.vector_size);
   fate_.resize(layout_.front.size());
   bad_pivot_.resize(layout_.front.size());
   for (auto& parts : norm2_) parts.resize(layout_.front.size());
+  is_plain_with_neighbours_.resize(static_cast<std::size_t>(layout_.condensed));
+  condensed_vectors_[0] = AlignedArray<T>(Offset{4} * layout_.condensed);
   dim_.resize(layout_.node.size());
   is_plain_.resize(layout_.node.size());
   basis_of_.resize(layout_.node.size());
@@ -51,9 +54,11 @@ void NumericFactor<T>::take_dims(const FactorSource& source) {
     }
   });
   basis_.clear();
-  if (basis.dim.empty()) return;
+  std::ranges::fill(is_plain_with_neighbours_, std::uint8_t{1});
   for (Index k = 0; k < nodes; ++k) {
     if (is_plain_[k]) continue;
+    if (layout_.condensed > 0) mark_projected(k);
+    if (basis.dim.empty()) continue;
     basis_of_[k] = static_cast<Index>(basis_.size());
     basis_.push_back(basis.frame[layout_.node[k]]);
   }
@@ -63,10 +68,15 @@ template <class T>
 Status NumericFactor<T>::factorize(const FactorSource& source, std::span<const Index> start, std::span<const FactorLoad> loads) {
   assert(loads.size() <= vectors_.size());
   if (planned_threads_ != thread_count()) plan();
-  if (loads.size() > 1 && vectors_[1].bytes() == 0) vectors_[1] = AlignedArray<T>(layout_.vector_size);
+  if (loads.size() > 1 && vectors_[1].bytes() == 0) {
+    vectors_[1] = AlignedArray<T>(layout_.vector_size);
+    condensed_vectors_[1] = AlignedArray<T>(condensed_vectors_[0].size());
+  }
   if (!source.replaced.empty() && replacement_.addend.empty()) replacement_ = plan_replacement(source.replaced, *source.a.pattern, layout_);
   take_dims(source);
+  first_bad_condensed_.store(std::numeric_limits<Index>::max(), std::memory_order_relaxed);
   gather(source);
+  if (!subtract_condensed()) return verdict(source.a);
   const auto run = [&](Index t) {
     const FrontTask& task = layout_.task[t];
     T* scratch = scratch_.data() + scratch_of_thread_ * thread_slot();
@@ -224,10 +234,14 @@ BadPivot NumericFactor<T>::factor_panel(const Front& front, T* panel, bool share
   return {};
 }
 
-// The first bad pivot in the order of elimination: fronts that do not depend on each other are all eliminated, so it does not depend on the
-// threads.
+// The first bad pivot in the order of elimination: nodes and fronts that do not depend on each other are all eliminated, so it does not
+// depend on the threads.
 template <class T>
-Status NumericFactor<T>::verdict(const BlockCsr& a) const {
+Status NumericFactor<T>::verdict(const BlockCsr& a) {
+  if (const Index k = first_bad_condensed_.load(std::memory_order_relaxed); k < layout_.condensed) {
+    const BadPivot bad = condense_projected(k);  // its blocks are as they were
+    return failure(a, k, bad.column, bad.value);
+  }
   const auto it = std::find(fate_.begin(), fate_.end(), Fate::bad_pivot);
   if (it == fate_.end()) return {};
   const auto s = it - fate_.begin();
@@ -235,11 +249,16 @@ Status NumericFactor<T>::verdict(const BlockCsr& a) const {
   const BadPivot& bad = bad_pivot_[s];
   Index k = front.last_node - 1;
   while (k > front.first_node && layout_.node_column[k] > bad.column) --k;
-  const Index node = layout_.node[k], unknown = a.pattern->dof_start[node] + bad.column - layout_.node_column[k];
+  return failure(a, k, bad.column - layout_.node_column[k], bad.value);
+}
+
+template <class T>
+Status NumericFactor<T>::failure(const BlockCsr& a, Index k, Index component, double pivot) const {
+  const Index node = layout_.node[k], unknown = a.pattern->dof_start[node] + component;
   const char* precision = sizeof(T) == 4 ? "single" : "double";
-  const bool finite = std::isfinite(bad.value);
+  const bool finite = std::isfinite(pivot);
   return {finite ? Outcome::not_positive_definite : Outcome::not_finite,
-          fmt::format("Cholesky (block, {} precision): pivot {:.3g} at unknown {} (node {}): {}", precision, bad.value, unknown, node,
+          fmt::format("Cholesky (block, {} precision): pivot {:.3g} at unknown {} (node {}): {}", precision, pivot, unknown, node,
                       finite ? "the matrix is not positive definite" : "the matrix holds NaN or infinity, or overflows this precision")};
 }
 

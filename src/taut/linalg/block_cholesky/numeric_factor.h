@@ -3,7 +3,8 @@
 // and the solves.
 //
 // First A's blocks are gathered in the order of elimination and in the factor's precision (gather.cpp): A is read once, from end to end,
-// where fronts would take rows from all over it.
+// where fronts would take rows from all over it. On the way nodes that are condensed are eliminated (condensation.h), and what they leave is
+// taken off the others' blocks after that (condensed_nodes.cpp).
 //
 // Then for each front, children first (front_kernels.h has the arithmetic, factor_layout.h the memory):
 //
@@ -16,9 +17,10 @@
 //
 // The solves keep one short vector a front, rows() long: forward, a front adds its children's and hands on what its pivots subtract from
 // the rows below; backward, it reads the solution of those rows from its parent's. No two fronts that run at the same time write the same
-// vector.
+// vector. Condensed nodes come first, and last, at the front below all their neighbours.
 
 #include <array>
+#include <atomic>
 #include <span>
 
 #include "taut/base/status.h"
@@ -56,7 +58,8 @@ struct FactorLoad {
 template <class T>
 class NumericFactor {
  public:
-  NumericFactor(const SupernodeTree& tree, const AnalyzedGraph& graph, const FrontKernels<T>& kernels = front_kernels<T>());
+  NumericFactor(const SupernodeTree& tree, const CondensedGraph& graph, std::span<const Index> condensed_at,
+                const FrontKernels<T>& kernels = front_kernels<T>());
 
   // The pattern of A has been checked against the analysis. Allocates when the number of threads has changed or more nodes than ever have a
   // basis of their own, or a second load comes for the first time, else nothing. The forward solves of up to two loads are done on the way,
@@ -67,28 +70,39 @@ class NumericFactor {
   // x = beta x + Q Pᵀ L⁻ᵀ y, for the y of the last forward solve, which is lost.
   void solve_backward(const FactorVectors& vectors, double beta, double* x);
   // yᵀy of the last forward solve, with its scale: summed in a fixed order.
-  double forward_norm2() const { return norm2_of(norm2_[0]); }
+  double forward_norm2() const { return norm2_of(0); }
   // Of the first of two loads.
-  double first_load_norm2() const { return norm2_of(norm2_[1]); }
+  double first_load_norm2() const { return norm2_of(1); }
 
   const FactorLayout& layout() const { return layout_; }
   const char* instruction_set() const { return kernels_.instruction_set; }
-  Offset panel_bytes() const { return packed_.bytes(); }
+  // What a solve reads of the factor.
+  Offset panel_bytes() const { return packed_.bytes() + layout_.block_start[layout_.condensed] * Offset{9 * sizeof(T)}; }
   Offset bytes() const {
     return gathered_.bytes() + packed_.bytes() + arena_.bytes() + scratch_.bytes() + vectors_[0].bytes() + vectors_[1].bytes() +
-           layout_.bytes() + replacement_.bytes();
+           condensed_vectors_[0].bytes() + condensed_vectors_[1].bytes() + layout_.bytes() + replacement_.bytes();
   }
 
  private:
   static constexpr Offset read_too_many = 3;  // entries, behind a block's last column
   enum class Fate : std::uint8_t { eliminated, bad_pivot, skipped };
 
-  static double norm2_of(const std::vector<double>& parts);
+  double norm2_of(int slot) const;
   void plan();
   void take_dims(const FactorSource& source);
   void gather(const FactorSource& source);
   void gather_row(const FactorSource& source, Index k);
   void add_replaced(const FactorSource& source, Index row);
+  // Condensed nodes: those of some of A's rows; one that is not plain; and, when all are, what they leave. False: there is a bad pivot.
+  void mark_projected(Index k);
+  void condense_rows(Index begin, Index end);
+  BadPivot condense_projected(Index k);
+  bool subtract_condensed();
+  double forward_condensed(const Front& front, const FactorVectors& vectors, const double* b, int slot);
+  void backward_condensed(const Front& front, const FactorVectors& vectors, double beta, double* x) const;
+  void forward_projected(Index k, double scale, const double* b, T* own, T* y) const;
+  void backward_projected(Index k, const T* own, const T* y, T* solution) const;
+  void turn_back(Index k, const T* solution, T (&to)[3]) const;
   // scratch: the thread's
   void eliminate(Index s, bool shared, T* scratch);
   void assemble(const Front& front, T* panel) const;
@@ -99,7 +113,8 @@ class NumericFactor {
   BadPivot factor_panel(const Front& front, T* panel, bool shared) const;
   void form_update(const Front& front, T* scratch, const T* panel, bool shared);
   void pack(const Front& front, const T* panel, bool shared);
-  Status verdict(const BlockCsr& a) const;
+  Status verdict(const BlockCsr& a);
+  Status failure(const BlockCsr& a, Index k, Index component, double pivot) const;
   // slot: of vectors_ and norm2_; 0 is the one that backward() takes.
   void forward(Index s, const FactorVectors& vectors, const double* b, int slot = 0);
   void backward(Index s, const FactorVectors& vectors, double beta, double* x);
@@ -111,11 +126,14 @@ class NumericFactor {
   AlignedArray<T> gathered_, packed_, arena_, scratch_;
   Offset scratch_of_thread_ = 0;
   std::array<AlignedArray<T>, 2> vectors_;
+  std::array<AlignedArray<T>, 2> condensed_vectors_;  // y of the condensed nodes, three numbers each and one that is nobody's
+  std::atomic<Index> first_bad_condensed_;  // place of the first condensed node whose pivot is bad
   std::vector<Fate> fate_;                    // per front
   std::vector<BadPivot> bad_pivot_;           // per front
-  std::array<std::vector<double>, 2> norm2_;  // per front: of its part of y
+  std::array<std::vector<double>, 2> norm2_;  // per front: of its part of y, with its condensed nodes
   std::vector<Index> dim_;                    // per place in the order: unknowns of the node in the factorised matrix
   std::vector<std::uint8_t> is_plain_;        // per place: three unknowns, without a basis of their own
+  std::vector<std::uint8_t> is_plain_with_neighbours_;  // per condensed node
   std::vector<Index> basis_of_;               // per place: its Q_i in basis_, or -1: the identity
   std::vector<Mat3> basis_;
 };

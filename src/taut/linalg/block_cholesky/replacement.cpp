@@ -9,20 +9,11 @@ namespace taut {
 namespace {
 
 // Multiplies A_ac in the block of two corners, counted a, b, c, d; only blocks that have a place.
-constexpr float factor_of(int corner, int other) {
-  if (corner == other) return corner % 2 == 0 ? -2.0f : -1.0f;
-  return (corner + other) % 2 == 1 ? 1.0f : -1.0f;
-}
-
-Index gathered_block(const FactorLayout& layout, Index place, Index other) {
-  Index e = layout.block_start[place];
-  while (e < layout.block_start[place + 1] && layout.block[e].place != other) ++e;
-  assert(e < layout.block_start[place + 1] && "no place for a side of a parallelogram");
-  return e;
-}
+constexpr float factor_of(int corner, int other) { return (corner + other) % 2 == 1 ? 1.0f : -1.0f; }
 
 struct Planned {
   Index block;  // of the layout
+  float factor;
   Replacement::Addend addend;
 };
 
@@ -41,17 +32,20 @@ Replacement plan_replacement(std::span<const Parallelogram> replaced, const Bloc
       for (int l = 0; l < 4; ++l) {
         const Index other = layout.place[corners[l]];
         if (other < place || (k != l && (k + l) % 2 == 0 && k % 2 == 0)) continue;
-        rows[row].push_back({gathered_block(layout, place, other), {value, pattern.width(source), factor_of(k, l)}});
+        rows[row].push_back({find_block(layout, place, other), factor_of(k, l), {static_cast<Index>(value - pattern.value_start[row]), pattern.width(source)}});
       }
     }
   }
   Replacement result;
   result.row_start.push_back(0);
   result.count.assign(layout.block.size(), 0);
+  result.factor.assign(layout.block.size(), 0.0f);
   for (auto& row : rows) {
     std::ranges::stable_sort(row, {}, &Planned::block);
     for (const Planned& planned : row) {
       ++result.count[planned.block];
+      assert(result.factor[planned.block] == 0.0f || result.factor[planned.block] == planned.factor);
+      result.factor[planned.block] = planned.factor;
       result.addend.push_back(planned.addend);
     }
     result.row_start.push_back(static_cast<Index>(result.addend.size()));
@@ -60,7 +54,7 @@ Replacement plan_replacement(std::span<const Parallelogram> replaced, const Bloc
 }
 
 Offset Replacement::bytes() const {
-  return static_cast<Offset>(addend.size() * sizeof(Addend) + (row_start.size() + count.size()) * sizeof(Index));
+  return static_cast<Offset>(addend.size() * sizeof(Addend) + (row_start.size() + count.size() + factor.size()) * sizeof(Index));
 }
 
 }  // namespace taut

@@ -1,8 +1,10 @@
 #pragma once
 // Which of A's blocks are added to which of the gathered ones when parallelograms stand in for blocks that are left out
-// (linalg/parallelogram.h). Where A_ac = -B is in the diagonal blocks of a and c already (lumped),
+// (linalg/parallelogram.h): of B = -A_ac
 //
-//   -2 A_ac to the diagonal blocks of a and c, -A_ac to those of b and d and to the block of b and d, A_ac to the four sides
+//   B to the diagonal blocks of all four corners and to the block of b and d, -B to the four sides
+//
+// so to any one block always B or always -B.
 
 #include <span>
 #include <vector>
@@ -14,12 +16,12 @@ namespace taut {
 
 struct Replacement {
   struct Addend {
-    Offset value;  // of the block's first entry in A
-    Index width;   // of its row there
-    float factor;  // multiplies
+    Index value;  // of the block's first entry in A, relative to the first of the row that is gathered
+    Index width;  // of its row there
   };
-  std::vector<Index> row_start;     // per row of A: its addends, block by block as they are gathered from it
-  std::vector<Index> count;         // per block of the layout: how many are its own
+  std::vector<Index> row_start;  // per row of A: its addends, block by block as they are gathered from it
+  std::vector<Index> count;      // per block of the layout: how many are its own ...
+  std::vector<float> factor;     // ... and what multiplies them: -1 or 1 of A's
   std::vector<Addend> addend;
 
   Offset bytes() const;

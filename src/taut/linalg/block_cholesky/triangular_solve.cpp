@@ -5,6 +5,7 @@
 
 #include "taut/base/simd.h"
 #include "taut/linalg/block_cholesky/numeric_factor.h"
+#include "taut/linalg/block_cholesky/quad.h"
 
 namespace taut {
 
@@ -28,26 +29,6 @@ void NumericFactor<T>::solve_backward(const FactorVectors& vectors, double beta,
 
 namespace {
 
-// Four numbers at any address.
-template <class T>
-struct Quad;
-template <>
-struct Quad<float> {
-  using Type = float __attribute__((vector_size(16), aligned(4), may_alias));
-};
-template <>
-struct Quad<double> {
-  using Type = double __attribute__((vector_size(32), aligned(8), may_alias));
-};
-template <class T>
-TAUT_ALWAYS_INLINE typename Quad<T>::Type& quad(T* p) {
-  return *reinterpret_cast<typename Quad<T>::Type*>(p);
-}
-template <class T>
-TAUT_ALWAYS_INLINE const typename Quad<T>::Type& quad(const T* p) {
-  return *reinterpret_cast<const typename Quad<T>::Type*>(p);
-}
-
 // A handful of numbers: too few to be worth a call. Reads and writes up to three more.
 template <class T>
 TAUT_ALWAYS_INLINE void copy_few(const T* from, Index count, T* to) {
@@ -70,9 +51,9 @@ double norm2_of_entries(const T* begin, const T* end) {
 }  // namespace
 
 template <class T>
-double NumericFactor<T>::norm2_of(const std::vector<double>& parts) {
+double NumericFactor<T>::norm2_of(int slot) const {
   double sum = 0.0;
-  for (const double part : parts) sum += part;
+  for (const double part : norm2_[slot]) sum += part;
   return sum;
 }
 
@@ -94,12 +75,13 @@ void NumericFactor<T>::forward(Index s, const FactorVectors& vectors, const doub
       for (Index r = 0; r < dim_[k]; ++r) to[r] = static_cast<T>(vectors.scale * from[r]);
     }
   }
+  const double condensed_norm2 = forward_condensed(front, vectors, b, slot);
   for (Index i = front.child_begin; i < front.child_end; ++i) {
     const Front& child = layout_.front[layout_.child[i]];
     kernels_.add_rows(layout_.spread.data() + child.spread_begin, child.spread_end - child.spread_begin, all + child.vector, y);
   }
   kernels_.forward(front.shape, packed_.data() + front.packed, y);
-  norm2_[slot][s] = norm2_of_entries(y + front.shape.padding, y + front.shape.columns);
+  norm2_[slot][s] = condensed_norm2 + norm2_of_entries(y + front.shape.padding, y + front.shape.columns);
 }
 
 template <class T>
@@ -128,14 +110,15 @@ void NumericFactor<T>::backward(Index s, const FactorVectors& vectors, double be
       for (Index r = 0; r < dim_[k]; ++r) to[r] = sum_with(scale * static_cast<double>(from[r]), beta, to[r]);
     }
   }
+  backward_condensed(front, vectors, beta, x);
 }
 
 template void NumericFactor<float>::solve_forward(const FactorVectors&, const double*);
 template void NumericFactor<double>::solve_forward(const FactorVectors&, const double*);
 template void NumericFactor<float>::solve_backward(const FactorVectors&, double, double*);
 template void NumericFactor<double>::solve_backward(const FactorVectors&, double, double*);
-template double NumericFactor<float>::norm2_of(const std::vector<double>&);
-template double NumericFactor<double>::norm2_of(const std::vector<double>&);
+template double NumericFactor<float>::norm2_of(int) const;
+template double NumericFactor<double>::norm2_of(int) const;
 template void NumericFactor<float>::forward(Index, const FactorVectors&, const double*, int);
 template void NumericFactor<double>::forward(Index, const FactorVectors&, const double*, int);
 
