@@ -4,7 +4,6 @@
 #include <array>
 #include <cassert>
 #include <cmath>
-#include <cstdlib>
 
 #include "taut/base/parallel.h"
 #include "taut/base/simd.h"
@@ -20,7 +19,7 @@ constexpr Index overread = 3;  // entries behind a block's last row that a load 
 using Four = double __attribute__((vector_size(32), aligned(8), may_alias));
 using FourSingle = float __attribute__((vector_size(16), aligned(4), may_alias));
 
-using Place = BlockRemainder::Place;
+using Term = BlockRemainder::Term;
 using Corner = BlockRemainder::Corner;
 
 TAUT_ALWAYS_INLINE void add_three(const double* x, Four& to) { to += Four{x[0], x[1], x[2], 0.0}; }
@@ -35,7 +34,7 @@ TAUT_ALWAYS_INLINE void add_product(const float* block, const Four& x, Four (&su
 // E's rows as they are now.
 struct BlockRemainder::Rows {
   const Index *row_start, *row_end, *corner_start;  // corner_start: null where nothing is replaced
-  const Place* place;
+  const Term* term;
   const Corner* corner;
   const float* values;
 
@@ -45,8 +44,8 @@ struct BlockRemainder::Rows {
     add_three(c + 3 * i, own);
     for (Index k = row_start[i]; k < row_end[i]; ++k) {
       Four x = -own;
-      add_three(c + place[k].column_dof, x);
-      add_product(values + Offset{9} * k, x, sum);
+      add_three(c + term[k].column_dof, x);
+      add_product(values + Offset{9} * term[k].block, x, sum);
     }
     if (corner_start)
       for (const Corner* at = corner + corner_start[i]; at < corner + corner_start[i + 1]; ++at) {
@@ -96,7 +95,7 @@ TAUT_MULTIVERSION BlockRemainder::Ratios largest_ratios(const BlockRemainder::Ro
   for (Index i = begin; i < end; ++i) {
     const double weight = 1.0 / (masses[i] * masses[i]);
     FourSingle dropped[3] = {}, replaced[3] = {};
-    for (Index k = rows.row_start[i]; k < rows.row_end[i]; ++k) add_block(rows.values + Offset{9} * k, dropped);
+    for (Index k = rows.row_start[i]; k < rows.row_end[i]; ++k) add_block(rows.values + Offset{9} * rows.term[k].block, dropped);
     const double ratio = weight * squared_norm(dropped);
     largest.dropped = ratio > largest.dropped ? ratio : largest.dropped;
     if (!rows.corner_start) continue;
@@ -112,30 +111,38 @@ TAUT_MULTIVERSION BlockRemainder::Ratios largest_ratios(const BlockRemainder::Ro
 
 BlockRemainder::Rows BlockRemainder::rows() const {
   return {row_start_.data(), replaced_ ? row_split_.data() : row_start_.data() + 1, replaced_ ? corner_start_.data() : nullptr,
-          place_.data(),     corner_.data(),                                        values_.data()};
+          term_.data(),      corner_.data(),                                        values_.data()};
 }
 
 void BlockRemainder::analyze(std::shared_ptr<const BlockPattern> pattern, std::span<const std::uint8_t> mask,
                              std::span<const Parallelogram> replaceable) {
   const BlockPattern& p = *pattern;
   assert(static_cast<Index>(mask.size()) == p.blocks() && p.uniform_dim == 3);
-  std::vector<Index> position(mask.size(), -1);  // of replaceable blocks
-  for (const Parallelogram& of : replaceable) position[of.block] = position[of.opposite] = 0;
+  std::vector<std::uint8_t> is_replaceable(mask.size(), 0);
+  for (const Parallelogram& of : replaceable) is_replaceable[of.block] = is_replaceable[of.opposite] = 1;
+  std::vector<Index> copied(mask.size(), -1);
+  copy_start_.assign(1, 0);
+  copy_.clear();
   row_start_.assign(1, 0);
   row_split_.clear();
-  place_.clear();
+  term_.clear();
   for (Index i = 0; i < p.rows(); ++i) {
-    for (const bool is_replaceable : {false, true}) {
-      if (is_replaceable) row_split_.push_back(static_cast<Index>(place_.size()));
-      for (Index k = p.row_start[i]; k < p.row_start[i + 1]; ++k) {
-        if (mask[k] || k == p.diagonal[i] || (position[k] >= 0) != is_replaceable) continue;
-        if (is_replaceable) position[k] = static_cast<Index>(place_.size());
-        place_.push_back({p.column_dof[k], p.block_offset[k]});
-      }
+    for (Index k = p.diagonal[i] + 1; k < p.row_start[i + 1]; ++k) {
+      if (mask[k]) continue;
+      copied[k] = copied[p.find(p.column[k], i)] = static_cast<Index>(copy_.size());
+      copy_.push_back(p.block_offset[k]);
     }
-    row_start_.push_back(static_cast<Index>(place_.size()));
+    copy_start_.push_back(static_cast<Index>(copy_.size()));
   }
-  values_.assign(static_cast<std::size_t>(nonzeros()) + overread, 0.0f);
+  for (Index i = 0; i < p.rows(); ++i) {
+    for (const std::uint8_t last : {0, 1}) {
+      if (last) row_split_.push_back(static_cast<Index>(term_.size()));
+      for (Index k = p.row_start[i]; k < p.row_start[i + 1]; ++k)
+        if (!mask[k] && k != p.diagonal[i] && is_replaceable[k] == last) term_.push_back({copied[k], p.column_dof[k]});
+    }
+    row_start_.push_back(static_cast<Index>(term_.size()));
+  }
+  values_.assign(9 * copy_.size() + overread, 0.0f);
 
   const auto corners = [](const Parallelogram& of) { return std::array{of.a, of.b, of.c, of.d}; };
   corner_start_.assign(static_cast<std::size_t>(p.rows()) + 1, 0);
@@ -147,9 +154,7 @@ void BlockRemainder::analyze(std::shared_ptr<const BlockPattern> pattern, std::s
   for (const Parallelogram& of : replaceable) {
     const auto corner = corners(of);
     for (std::size_t k = 0; k < 4; ++k) {
-      // The nearer row's copy: it is read about then.
-      const bool from_c = std::abs(corner[k] - of.c) < std::abs(corner[k] - of.a);
-      corner_[next[corner[k]]++] = {position[from_c ? of.opposite : of.block], p.dof_start[corner[(k + 2) % 4]],
+      corner_[next[corner[k]]++] = {copied[of.block], p.dof_start[corner[(k + 2) % 4]],
                                     {p.dof_start[corner[(k + 1) % 4]], p.dof_start[corner[(k + 3) % 4]]}};
     }
   }
@@ -167,7 +172,7 @@ void BlockRemainder::update_rows(const BlockCsr& a, Index begin, Index end) {
   for (Index i = begin; i < end; ++i) {
     const double* row = a.values.data() + p.value_start[i];
     const Index width = p.width(i);
-    for (Index k = row_start_[i]; k < row_start_[i + 1]; ++k) copy_block_3(row + place_[k].in_row, width, values_.data() + Offset{9} * k);
+    for (Index k = copy_start_[i]; k < copy_start_[i + 1]; ++k) copy_block_3(row + copy_[k], width, values_.data() + Offset{9} * k);
   }
 }
 
@@ -206,7 +211,7 @@ BlockRemainder::Ratios BlockRemainder::ratios(std::span<const double> masses) co
 
 Offset BlockRemainder::bytes() const {
   const auto bytes_of = [](const auto& list) { return static_cast<Offset>(list.size() * sizeof(list[0])); };
-  return bytes_of(values_) + bytes_of(place_) + bytes_of(corner_) + bytes_of(row_start_) + bytes_of(row_split_) + bytes_of(corner_start_);
+  return bytes_of(values_) + bytes_of(copy_start_) + bytes_of(copy_) + bytes_of(term_) + bytes_of(corner_) + bytes_of(row_start_) + bytes_of(row_split_) + bytes_of(corner_start_);
 }
 
 }  // namespace taut

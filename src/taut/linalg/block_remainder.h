@@ -17,7 +17,7 @@
 // blocks are kept in single precision too, which adds less than that: their relative error u acts on differences, |δ(E c)| in the norm of M⁻¹
 // is at most some u sqrt(ρ Σ_ij |A_ij| |c_j - c_i|²), next to nothing where c is smooth. Sums are in double precision.
 //
-// 3x3 blocks. With constraints (linalg/node_basis.h), p and q hold something in constrained directions that nobody reads.
+// 3x3 blocks, each of them symmetric, as springs' are: so one copy serves both of its rows. With constraints (linalg/node_basis.h), p and q hold something in constrained directions that nobody reads.
 
 #include <cstdint>
 #include <memory>
@@ -50,12 +50,12 @@ class BlockRemainder {
     double dropped = 0.0, replaced = 0.0;
   };
   Ratios ratios(std::span<const double> masses) const;
-  Offset nonzeros() const { return Offset{9} * static_cast<Offset>(place_.size()); }
+  Offset nonzeros() const { return Offset{9} * static_cast<Offset>(term_.size()); }
   Offset bytes() const;
 
-  // Where a block is: its column's first unknown, and its own first column in the row's panel of A.
-  struct Place {
-    Index column_dof, in_row;
+  // A block in one of its rows: which copy, and its column's first unknown.
+  struct Term {
+    Index block, column_dof;
   };
   // A parallelogram at one of its corners: which block, and the first unknowns of the corner opposite and of the two between.
   struct Corner {
@@ -69,9 +69,11 @@ class BlockRemainder {
 
   std::shared_ptr<const BlockPattern> pattern_;
   bool replaced_ = false;
+  std::vector<Index> copy_start_{0};  // per row: the blocks copied from it, those right of the diagonal ...
+  std::vector<Index> copy_;           // ... and their first columns in the row's panel of A
   std::vector<Index> row_start_{0};
-  std::vector<Index> row_split_;     // per row: its blocks from here on are replaceable
-  std::vector<Place> place_;
+  std::vector<Index> row_split_;     // per row: its terms from here on are replaceable
+  std::vector<Term> term_;
   std::vector<Index> corner_start_;  // per row
   std::vector<Corner> corner_;
   LargeVector<float> values_;  // row-major blocks, and a few entries that are read too many
