@@ -71,7 +71,7 @@ TAUT_ALWAYS_INLINE void multiply_lower(const T (&m)[6], T* block) {
   const Four last = m[3] * b0 + m[4] * b1 + m[5] * b2;
   quad(block) = m[0] * b0;
   quad(block + 3) = m[1] * b0 + m[2] * b1;
-  for (Index i = 0; i < 3; ++i) block[6 + i] = last[i];
+  put_three(last, block + 6);
 }
 
 // C and the B_ij become G and the U_ij.
@@ -126,7 +126,7 @@ TAUT_ALWAYS_INLINE void subtract_products(const FactorLayout& layout, Index begi
     }
     quad(to) = row[0];
     quad(to + 3) = row[1];
-    for (Index a = 0; a < 3; ++a) to[6 + a] = row[2][a];
+    put_three(row[2], to + 6);
   }
 }
 

@@ -28,6 +28,7 @@ class LayoutBuilder {
         map_rows(layout_.child[c], layout_.front[s].shape.columns);
     }
     if (condensed_ > 0) pair_condensed();
+    order_by_rows();
     return std::move(layout_);
   }
 
@@ -93,7 +94,7 @@ class LayoutBuilder {
     layout_.gathered_start.push_back(layout_.gathered_size);
     const auto add = [&](Index place, Index value) {
       layout_.block.push_back({0, 0, place, 0});
-      layout_.block_value.push_back(value);
+      value_.push_back(value);
       layout_.gathered_size += 9;
     };
     add(k, all.diagonal[i]);
@@ -113,6 +114,15 @@ class LayoutBuilder {
         if (const Index other = layout_.place[rest.node[rest.graph.neighbour[e]]]; other > k)
           add_block(layout_.front[s].shape, k, other, rest.value[e]);
       layout_.block_start.push_back(static_cast<Index>(layout_.block.size()));
+    }
+  }
+
+  void order_by_rows() {
+    layout_.row_start.push_back(0);
+    for (const Index k : layout_.place) {
+      layout_.row_to.push_back(k < 0 ? -1 : layout_.gathered_start[k]);
+      if (k >= 0) layout_.row_value.insert(layout_.row_value.end(), &value_[layout_.block_start[k]], &value_[layout_.block_start[k]] + (layout_.block_start[k + 1] - layout_.block_start[k]));
+      layout_.row_start.push_back(static_cast<Index>(layout_.row_value.size()));
     }
   }
 
@@ -152,7 +162,7 @@ class LayoutBuilder {
   void add_block(const FrontShape& shape, Index node, Index place, Index value) {
     const Index row = row_of_[place], slab = row / sizes_.slab_rows, in_slab = row % sizes_.slab_rows;
     layout_.block.push_back({shape.panel_offset(slab) + in_slab, shape.panel_offset(slab + 1), place, sizes_.slab_rows - in_slab});
-    layout_.block_value.push_back(value);
+    value_.push_back(value);
     layout_.gathered_size += Offset{weight_at(node)} * weight_at(place);
   }
 
@@ -203,6 +213,7 @@ class LayoutBuilder {
   const KernelSizes sizes_;
   const Index condensed_;
   FactorLayout layout_;
+  std::vector<Index> value_;   // per block: FactorLayout::row_value
   std::vector<Index> row_of_;  // by place in the order: first row in the front at hand
 };
 
@@ -222,7 +233,7 @@ Index find_block(const FactorLayout& layout, Index place, Index other) {
 Offset FactorLayout::bytes() const {
   const auto size_of = [](const auto& v) { return static_cast<Offset>(v.size() * sizeof(v[0])); };
   return size_of(front) + size_of(child) + size_of(run) + size_of(spread) + size_of(node) + size_of(node_weight) + size_of(node_column) +
-         size_of(place) + size_of(block_start) + size_of(block) + size_of(block_value) + size_of(gathered_start) + size_of(condensed_row) +
+         size_of(place) + size_of(block_start) + size_of(block) + size_of(gathered_start) + size_of(row_start) + size_of(row_value) + size_of(row_to) + size_of(condensed_row) +
          size_of(pair_start) + size_of(pair) + size_of(task);
 }
 

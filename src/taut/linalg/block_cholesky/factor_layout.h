@@ -73,8 +73,11 @@ struct FactorLayout {
   std::vector<Index> place;        // per row of A: of its node in the order, or -1
   std::vector<Index> block_start;  // per place in the order, into block and block_value; nodes + 1
   std::vector<BlockPlace> block;   // the node's diagonal block first, then those of later nodes
-  std::vector<Index> block_value;      // per block: its first column in the node's row of the analysed matrix; -1: it has none there
   std::vector<Offset> gathered_start;  // per place in the order: where its blocks begin among those gathered from A
+  // In the order of A's rows, as gathering goes:
+  std::vector<Index> row_start;  // per row, into row_value: its node's blocks, in the order of `block`; rows + 1
+  std::vector<Index> row_value;  // per block: its first column in the row of the analysed matrix; -1: it has none there
+  std::vector<Offset> row_to;    // per row: gathered_start of its node; -1 without unknowns
   // Where nodes are condensed, and then a gathered block e begins at 9 e:
   std::vector<Index> condensed_row;   // per block of condensed nodes: where the other node begins in the vector of the front that takes it in
   std::vector<Index> pair_start;      // per block, into pair; blocks + 1

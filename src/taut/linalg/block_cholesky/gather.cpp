@@ -5,6 +5,7 @@
 #include "taut/base/parallel.h"
 #include "taut/base/simd.h"
 #include "taut/linalg/block_cholesky/numeric_factor.h"
+#include "taut/linalg/block_cholesky/quad.h"
 
 namespace taut {
 
@@ -40,40 +41,39 @@ struct BlockSum {
   }
   template <class T>
   TAUT_ALWAYS_INLINE void write(T* to) const {
-    typedef T Four __attribute__((vector_size(4 * sizeof(T)), aligned(sizeof(T)), may_alias));
-    for (Index j = 0; j < 2; ++j) *reinterpret_cast<Four*>(to + 3 * j) = __builtin_convertvector(row[j], Four);
-    for (Index i = 0; i < 3; ++i) to[6 + i] = static_cast<T>(row[2][i]);
+    for (Index j = 0; j < 2; ++j) quad(to + 3 * j) = __builtin_convertvector(row[j], typename Quad<T>::Type);
+    put_three(__builtin_convertvector(row[2], typename Quad<T>::Type), to + 6);
   }
 };
 
-// What gathering rows of 3x3 blocks of the analysed pattern itself reads.
+// What gathering rows of 3x3 blocks of the analysed pattern itself reads. All of it lies in the order of A's rows.
 struct PlainRows {
   const double* values;
-  const Offset *value_start, *gathered_start;
-  const Index *place, *block_start, *block_value;
+  const Offset *value_start, *to;
+  const Index *block_start, *block_value;
   const Index *lumped_start, *lumped_end, *lumped;  // null: none is lumped
-  const Index* addend_start;           // null: nothing is replaced
+  const Index* addend_start;                        // null: nothing is replaced
   const Index* addend_count;
   const float* addend_factor;
   const Replacement::Addend* addend;
 };
 
-// Where a node's blocks will go: in the order of elimination, so anywhere.
+// Where a row's blocks will go: in the order of elimination, so anywhere.
 template <class T>
-TAUT_ALWAYS_INLINE void prefetch_gathered(const PlainRows& rows, Index k, const T* gathered) {
-  if (k < 0) return;
+TAUT_ALWAYS_INLINE void prefetch_gathered(const PlainRows& rows, Index i, const T* gathered) {
+  if (rows.to[i] < 0) return;
   constexpr Offset line = 64 / sizeof(T);
-  const Offset end = rows.gathered_start[k] + Offset{9} * (rows.block_start[k + 1] - rows.block_start[k]);
-  for (Offset at = rows.gathered_start[k] / line * line; at < end; at += line) __builtin_prefetch(gathered + at, 1, 2);
+  const Offset end = rows.to[i] + Offset{9} * (rows.block_start[i + 1] - rows.block_start[i]);
+  for (Offset at = rows.to[i] / line * line; at < end; at += line) __builtin_prefetch(gathered + at, 1, 2);
 }
 
 template <class T>
 TAUT_ALWAYS_INLINE void gather_plain_row(const PlainRows& rows, Index i, T* gathered) {
-  const Index k = rows.place[i], width = static_cast<Index>((rows.value_start[i + 1] - rows.value_start[i]) / 3);
+  const Index width = static_cast<Index>((rows.value_start[i + 1] - rows.value_start[i]) / 3);
   const double* row = rows.values + rows.value_start[i];
   for (Index l = 0; l < 3 * width; l += 8) __builtin_prefetch(row + prefetch_distance + l, 0, 2);
-  T* to = gathered + rows.gathered_start[k];
-  const Index begin = rows.block_start[k], end = rows.block_start[k + 1];
+  T* to = gathered + rows.to[i];
+  const Index begin = rows.block_start[i], end = rows.block_start[i + 1];
   const Replacement::Addend* addend = rows.addend_start ? rows.addend + rows.addend_start[i] : nullptr;
   for (Index e = begin; e < end; ++e, to += 9) {
     const Index value = rows.block_value[e];
@@ -92,7 +92,7 @@ TAUT_ALWAYS_INLINE void gather_plain_row(const PlainRows& rows, Index i, T* gath
 template <class T>
 TAUT_ALWAYS_INLINE void gather_plain_rows(const PlainRows& rows, Index begin, Index end, Index last, T* gathered) {
   for (Index i = begin; i < end; ++i) {
-    if (i + rows_ahead < last) prefetch_gathered(rows, rows.place[i + rows_ahead], gathered);
+    if (i + rows_ahead < last) prefetch_gathered(rows, i + rows_ahead, gathered);
     gather_plain_row(rows, i, gathered);
   }
 }
@@ -115,7 +115,7 @@ void NumericFactor<T>::gather_row(const FactorSource& source, Index k) {
   T* to = gathered_.data() + layout_.gathered_start[k];
   for (Index e = layout_.block_start[k]; e < layout_.block_start[k + 1]; ++e) {
     const Index other = layout_.block[e].place, other_weight = layout_.node_weight[other], size = layout_.node_weight[k] * other_weight;
-    const Index value = source.pattern_is_analyzed ? layout_.block_value[e] : find_block(p, node, layout_.node[other]);
+    const Index value = source.pattern_is_analyzed ? layout_.row_value[layout_.row_start[node] + e - layout_.block_start[k]] : find_block(p, node, layout_.node[other]);
     std::fill(to, to + size, T(0));
     for (Index j = 0; j < dim && value >= 0; ++j)
       for (Index i = 0; i < p.dim(layout_.node[other]); ++i) to[j * other_weight + i] = static_cast<T>(row[j * width + value + i]);
@@ -134,7 +134,7 @@ void NumericFactor<T>::add_replaced(const FactorSource& source, Index row) {
   T* to = gathered_.data() + layout_.gathered_start[k];
   const Replacement::Addend* addend = replacement_.addend.data() + replacement_.row_start[row];
   const double* values = source.a.values.data() + source.a.pattern->value_start[row];
-  for (Index e = layout_.block_start[k]; e < layout_.block_start[k + 1]; ++e, to += 9)
+  for (Index e = layout_.row_start[row]; e < layout_.row_start[row + 1]; ++e, to += 9)
     for (const auto* stop = addend + replacement_.count[e]; addend < stop; ++addend)
       for (Index entry = 0; entry < 9; ++entry)
         to[entry] += replacement_.factor[e] * static_cast<T>(values[addend->value + entry / 3 * addend->width + entry % 3]);
@@ -147,10 +147,9 @@ void NumericFactor<T>::gather(const FactorSource& source) {
   const UnanalyzedBlocks* lumped = source.lumped;
   const PlainRows rows{source.a.values.data(),
                        p.value_start.data(),
-                       layout_.gathered_start.data(),
-                       layout_.place.data(),
-                       layout_.block_start.data(),
-                       layout_.block_value.data(),
+                       layout_.row_to.data(),
+                       layout_.row_start.data(),
+                       layout_.row_value.data(),
                        lumped ? lumped->row_start.data() : nullptr,
                        lumped ? (is_replaced ? lumped->row_split.data() : lumped->row_start.data() + 1) : nullptr,
                        lumped ? lumped->value.data() : nullptr,

@@ -25,4 +25,11 @@ TAUT_ALWAYS_INLINE const typename Quad<T>::Type& quad(const T* p) {
   return *reinterpret_cast<const typename Quad<T>::Type*>(p);
 }
 
+// The first three of them: two at once.
+template <class T>
+TAUT_ALWAYS_INLINE void put_three(const typename Quad<T>::Type& from, T* to) {
+  __builtin_memcpy(to, &from, 2 * sizeof(T));
+  to[2] = from[2];
+}
+
 }  // namespace taut

@@ -12,7 +12,7 @@ namespace {
 constexpr float factor_of(int corner, int other) { return (corner + other) % 2 == 1 ? 1.0f : -1.0f; }
 
 struct Planned {
-  Index block;  // of the layout
+  Index block;  // of FactorLayout::row_value
   float factor;
   Replacement::Addend addend;
 };
@@ -32,7 +32,8 @@ Replacement plan_replacement(std::span<const Parallelogram> replaced, const Bloc
       for (int l = 0; l < 4; ++l) {
         const Index other = layout.place[corners[l]];
         if (other < place || (k != l && (k + l) % 2 == 0 && k % 2 == 0)) continue;
-        rows[row].push_back({find_block(layout, place, other), factor_of(k, l), {static_cast<Index>(value - pattern.value_start[row]), pattern.width(source)}});
+        const Index block = layout.row_start[row] + find_block(layout, place, other) - layout.block_start[place];
+        rows[row].push_back({block, factor_of(k, l), {static_cast<Index>(value - pattern.value_start[row]), pattern.width(source)}});
       }
     }
   }

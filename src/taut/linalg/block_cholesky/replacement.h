@@ -20,8 +20,8 @@ struct Replacement {
     Index width;  // of its row there
   };
   std::vector<Index> row_start;  // per row of A: its addends, block by block as they are gathered from it
-  std::vector<Index> count;      // per block of the layout: how many are its own ...
-  std::vector<float> factor;     // ... and what multiplies them: -1 or 1 of A's
+  std::vector<Index> count;      // per block in the order of FactorLayout::row_value: how many are its own ...
+  std::vector<float> factor;     // ... and what multiplies them: 1 or -1
   std::vector<Addend> addend;
 
   Offset bytes() const;
