@@ -82,8 +82,8 @@ TAUT_ALWAYS_INLINE bool condense_plain(T* block, Index blocks) {
   T m[6];
   for (Index k = 0; k < 6; ++k) m[k] = static_cast<T>(inverse[k]);
   for (Index e = 1; e < blocks; ++e) multiply_lower(m, block + Offset{9} * e);
-  const T g[] = {m[0], m[1], m[3], 0, m[2], m[4], 0, 0, m[5]};
-  std::copy(g, g + 9, block);
+  for (Index i = 0; i < 3; ++i)
+    for (Index r = 0; r < 3; ++r) block[3 * i + r] = i > r ? T(0) : m[r * (r + 1) / 2 + i];
   return true;
 }
 
