@@ -80,6 +80,13 @@ TEST_P(CoreFastSteps, AreThoseOfTheSpringsInTheCore) {
       const std::vector<double> smooth = affine_motion(sheet);
       system.masses = sheet.masses;
       if (GetParam()) system.last = smooth;
+      const Eigen::MatrixXd all = dense(sheet.a);
+      // Known, so that products from the factor are trusted as far as rounding allows: the same directions, to its size.
+      for (Index i = 0; i < sheet.a.rows(); ++i) {
+        const Mat3 block = all.block<3, 3>(3 * i, 3 * i);
+        system.stiffness = std::max(system.stiffness, block.operatorNorm() / sheet.masses[static_cast<std::size_t>(i)]);
+      }
+      const double rounding = 4.0 * 0x1p-24 * std::sqrt(1.0 + system.stiffness);
       BlockCholesky same_core(CholeskyPrecision::single_precision);
       ASSERT_TRUE(same_core.analyze(sheet.a.pattern, sheet.stretch, BlocksLeftOut::without_place).ok());
       const auto parallelograms = same_core.parallelograms();
@@ -105,7 +112,7 @@ TEST_P(CoreFastSteps, AreThoseOfTheSpringsInTheCore) {
       const SolveSummary summary = solver->solve(system, x);
       ASSERT_TRUE(summary.status.ok()) << summary.status.message;
       ASSERT_GE(seen.size(), stops.size());
-      for (std::size_t k = 0; k < stops.size(); ++k) EXPECT_NEAR(seen[k], stops[k], 0.05 * stops[k] + 1e-6) << k;
+      for (std::size_t k = 0; k < stops.size(); ++k) EXPECT_NEAR(seen[k], stops[k], 0.05 * stops[k] + 1e-6 + rounding) << k;
 
       EXPECT_EQ(summary.replaced, GetParam());
       BlockRemainder remainder;

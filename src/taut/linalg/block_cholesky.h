@@ -2,7 +2,8 @@
 // Taut's own sparse Cholesky factorisation P A Pᵀ = L Lᵀ for matrices made of small blocks, one per node (cloth: 3x3; scalar matrices:
 // 1x1).
 //
-//   analyze     nested dissection of the node graph, elimination tree, supernodes, all memory planned: once per topology
+//   analyze     nodes of few neighbours that share no block, to be eliminated first and by themselves (block_cholesky/condensation.h); of the
+//               others' graph nested dissection, elimination tree, supernodes; all memory planned: once per topology
 //   factorize   multifrontal, dense SIMD kernels chosen for the machine, parallel over the tree and inside its upper fronts
 //   solve       forward and backward, double vectors in and out whatever the precision of L; x = A⁻¹ b up to that precision
 //

@@ -13,6 +13,8 @@ namespace {
 
 // A node of d neighbours costs d (d + 1) / 2 products of blocks, and joins d nodes to each other.
 constexpr Index most_neighbours = 6;
+// At most so many are as good as fewer: the borders of a grid come in turn with what is inside, so that there is one pattern throughout.
+constexpr Index few_neighbours = 4;
 // Of all nodes: with fewer than one in so many, the order of elimination is better left alone.
 constexpr Index least_share = 4;
 
@@ -25,7 +27,7 @@ std::vector<Index> condensed_nodes(const AnalyzedGraph& all) {
   const auto neighbours = [&](Index i) { return graph.start[i + 1] - graph.start[i]; };
   std::vector<Index> order(static_cast<std::size_t>(nodes));
   std::iota(order.begin(), order.end(), 0);
-  std::ranges::stable_sort(order, {}, neighbours);
+  std::ranges::stable_sort(order, {}, [&](Index i) { return std::max(few_neighbours, neighbours(i)); });
 
   std::vector<Index> chosen;
   std::vector<std::uint8_t> is_taken(static_cast<std::size_t>(nodes), 0);

@@ -8,7 +8,8 @@
 //   forward    y_i = Gᵀ_i b_i, b_j -= Uᵀ_ij y_i
 //   backward   x_i = G_i (y_i - Σ_j U_ij x_j)
 //
-// (static condensation; block LDLᵀ of the nodes' own columns.) With a basis Q_i (linalg/node_basis.h), C_i⁻¹ is Q_i (Qᵀ_i C_i Q_i)⁻¹ Qᵀ_i.
+// (static condensation; block LDLᵀ of the nodes' own columns.) With a basis Q_i (linalg/node_basis.h), G_i is of
+// Qᵀ_i C_i Q_i, U_ij = Gᵀ_i Qᵀ_i B_ij, and the solves apply Q_i on the way in and out.
 
 #include <vector>
 

@@ -248,9 +248,10 @@ BadPivot NumericFactor<T>::condense_projected(Index k) {
   const InverseFactor inverse(lower, dim_[k]);
   if (inverse.bad >= 0) return {inverse.bad, inverse.bad_value};
 
+  // In the basis: Q itself is applied in double precision, so that nothing comes out in directions that the node has not.
   Mat3 g;
   for (Index i = 0; i < 3; ++i)
-    for (Index r = 0; r < 3; ++r) g(i, r) = q(i, 0) * inverse.m[r][0] + q(i, 1) * inverse.m[r][1] + q(i, 2) * inverse.m[r][2];
+    for (Index r = 0; r < 3; ++r) g(i, r) = inverse.m[r][i];
   const auto put = [](const Mat3& from, T* to) {
     for (Index i = 0; i < 3; ++i)
       for (Index j = 0; j < 3; ++j) to[3 * i + j] = static_cast<T>(from(i, j));
@@ -258,7 +259,7 @@ BadPivot NumericFactor<T>::condense_projected(Index k) {
   for (Index e = 1; e < layout_.block_start[k + 1] - layout_.block_start[k]; ++e) {
     Mat3 b;
     for (Index i = 0; i < 9; ++i) b(i / 3, i % 3) = static_cast<double>(block[Offset{9} * e + i]);
-    put(g.transpose() * b, block + Offset{9} * e);
+    put(g.transpose() * (q.transpose() * b), block + Offset{9} * e);
   }
   put(g, block);
   return {};
@@ -292,10 +293,10 @@ double NumericFactor<T>::forward_condensed(const Front& front, const FactorVecto
 template <class T>
 void NumericFactor<T>::forward_projected(Index k, double scale, const double* b, T* own, T* y) const {
   const T* block = gathered_.data() + Offset{9} * layout_.block_start[k];
-  const Index unknowns = basis_of_[k] >= 0 ? 3 : dim_[k];
-  for (Index r = 0; r < 3; ++r) {
-    own[r] = T(0);
-    for (Index j = 0; j < unknowns; ++j) own[r] += static_cast<T>(scale * b[j]) * block[3 * j + r];
+  std::fill(own, own + 3, T(0));
+  for (Index j = 0; j < dim_[k]; ++j) {
+    const T load = static_cast<T>(scale * (basis_of_[k] < 0 ? b[j] : basis_[basis_of_[k]].col(j).dot(Eigen::Map<const Vec3>(b))));
+    for (Index r = 0; r < 3; ++r) own[r] += load * block[3 * j + r];
   }
   for (Index e = layout_.block_start[k] + 1; e < layout_.block_start[k + 1]; ++e) {
     block += 9;
@@ -315,18 +316,17 @@ void NumericFactor<T>::backward_condensed(const Front& front, const FactorVector
   backward_some(plain, is_plain_with_neighbours_.data(), front.first_condensed, front.last_condensed, own, y, beta, x);
   for (Index k = front.first_condensed; k < front.last_condensed; ++k) {
     if (is_plain_with_neighbours_[k]) continue;
-    T solution[3];
-    backward_projected(k, own + Offset{4} * k, y, solution);
+    const Vec3 solution = backward_projected(k, own + Offset{4} * k, y);
     double* to = x + vectors.start[k];
     for (Index i = 0; i < (basis_of_[k] >= 0 ? 3 : dim_[k]); ++i) {
-      const double value = scale * static_cast<double>(solution[i]);
+      const double value = scale * solution[i];
       to[i] = beta == 0.0 ? value : value + beta * to[i];
     }
   }
 }
 
 template <class T>
-void NumericFactor<T>::backward_projected(Index k, const T* own, const T* y, T* solution) const {
+Vec3 NumericFactor<T>::backward_projected(Index k, const T* own, const T* y) const {
   const T* const g = gathered_.data() + Offset{9} * layout_.block_start[k];
   const T* block = g;
   T rest[3] = {own[0], own[1], own[2]};
@@ -336,7 +336,12 @@ void NumericFactor<T>::backward_projected(Index k, const T* own, const T* y, T* 
     turn_back(layout_.block[e].place, y + layout_.condensed_row[e], z);
     for (Index r = 0; r < 3; ++r) rest[r] -= block[3 * r] * z[0] + block[3 * r + 1] * z[1] + block[3 * r + 2] * z[2];
   }
-  for (Index i = 0; i < 3; ++i) solution[i] = g[3 * i] * rest[0] + g[3 * i + 1] * rest[1] + g[3 * i + 2] * rest[2];
+  Vec3 solution = Vec3::Zero();
+  for (Index i = 0; i < dim_[k]; ++i) {
+    const double entry = static_cast<double>(g[3 * i] * rest[0] + g[3 * i + 1] * rest[1] + g[3 * i + 2] * rest[2]);
+    solution += entry * (basis_of_[k] < 0 ? Vec3(Vec3::Unit(i)) : Vec3(basis_[basis_of_[k]].col(i)));
+  }
+  return solution;
 }
 
 // The solution of any node, in A's directions; what it has no unknowns for is zero.

@@ -101,7 +101,7 @@ class NumericFactor {
   double forward_condensed(const Front& front, const FactorVectors& vectors, const double* b, int slot);
   void backward_condensed(const Front& front, const FactorVectors& vectors, double beta, double* x) const;
   void forward_projected(Index k, double scale, const double* b, T* own, T* y) const;
-  void backward_projected(Index k, const T* own, const T* y, T* solution) const;
+  Vec3 backward_projected(Index k, const T* own, const T* y) const;
   void turn_back(Index k, const T* solution, T (&to)[3]) const;
   // scratch: the thread's
   void eliminate(Index s, bool shared, T* scratch);
