@@ -1,5 +1,5 @@
 // NumericFactor's condensed nodes (condensation.h). Gathered blocks begin at multiples of nine; what is read as the fourth number of a
-// block's row is the next row's first one, or the next block's.
+// block's row is the next row's first one; in the solves, when nobody writes, also the next block's.
 
 #include <algorithm>
 #include <cmath>
@@ -67,7 +67,9 @@ TAUT_ALWAYS_INLINE bool invert_plain(const T* c, double (&m)[6]) {
 template <class T>
 TAUT_ALWAYS_INLINE void multiply_lower(const T (&m)[6], T* block) {
   using Four = typename Quad<T>::Type;
-  const Four b0 = quad(block), b1 = quad(block + 3), b2 = quad(block + 6);
+  const Four b0 = quad(block), b1 = quad(block + 3);
+  Four b2;
+  get_last_row(block, b2);
   const Four last = m[3] * b0 + m[4] * b1 + m[5] * b2;
   quad(block) = m[0] * b0;
   quad(block + 3) = m[1] * b0 + m[2] * b1;
@@ -116,13 +118,14 @@ TAUT_ALWAYS_INLINE void subtract_products(const FactorLayout& layout, Index begi
   const CondensedPair* pair = layout.pair.data() + pair_start[layout.block_start[begin]];
   for (Index e = layout.block_start[begin]; e < layout.block_start[end]; ++e) {
     T* to = gathered + Offset{9} * e;
-    Four row[3] = {quad(to), quad(to + 3), quad(to + 6)};
+    Four row[3] = {quad(to), quad(to + 3)};
+    get_last_row(to, row[2]);
     for (const CondensedPair* stop = layout.pair.data() + pair_start[e + 1]; pair < stop; ++pair) {
       const T *left = gathered + Offset{9} * pair->first, *right = gathered + Offset{9} * pair->second;
-      for (Index r = 0; r < 3; ++r) {
-        const Four u = quad(right + 3 * r);
-        for (Index a = 0; a < 3; ++a) row[a] -= left[3 * r + a] * u;
-      }
+      Four u[3] = {quad(right), quad(right + 3)};
+      get_last_row(right, u[2]);
+      for (Index r = 0; r < 3; ++r)
+        for (Index a = 0; a < 3; ++a) row[a] -= left[3 * r + a] * u[r];
     }
     quad(to) = row[0];
     quad(to + 3) = row[1];

@@ -25,6 +25,13 @@ TAUT_ALWAYS_INLINE const typename Quad<T>::Type& quad(const T* p) {
   return *reinterpret_cast<const typename Quad<T>::Type*>(p);
 }
 
+// The last row of a 3x3 block, without the number behind it, which another thread may be writing.
+template <class T>
+TAUT_ALWAYS_INLINE void get_last_row(const T* block, typename Quad<T>::Type& to) {
+  const typename Quad<T>::Type from = quad(block + 5);
+  to = __builtin_shufflevector(from, from, 1, 2, 3, 3);
+}
+
 // The first three of them: two at once.
 template <class T>
 TAUT_ALWAYS_INLINE void put_three(const typename Quad<T>::Type& from, T* to) {
