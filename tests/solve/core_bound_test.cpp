@@ -129,6 +129,21 @@ TEST(CoreBound, NothingLeftOutIsZero) {
   EXPECT_EQ(remainder_ratio(sheet.c.a, std::vector<std::uint8_t>(sheet.c.core.size(), 1), masses), 0.0);
 }
 
+// A block outside the core that no spring makes: nothing is claimed, so that core_fast does not take springs out that are none.
+TEST(CoreBound, IsNotKnownForBlocksThatAreNotSymmetric) {
+  Random random(9);
+  BlockCsr a = random_spd(random, make_pattern(random_graph(random, 20, 1, 5), 3));
+  const std::vector<double> masses(20, 1.0);
+  std::vector<std::uint8_t> core(static_cast<std::size_t>(a.pattern->blocks()), 1);
+  EXPECT_EQ(remainder_ratio(a, core, masses), 0.0);
+  core[a.pattern->find(4, 5)] = core[a.pattern->find(5, 4)] = 0;
+  EXPECT_EQ(remainder_ratio(a, core, masses), -1.0);
+  for (const auto& [i, j] : {std::pair{4, 5}, std::pair{5, 4}})
+    for (Index r = 0; r < 3; ++r)
+      for (Index c = 0; c < 3; ++c) a.block(i, a.pattern->find(i, j))[r * a.pattern->width(i) + c] = r == c ? -0.5 : 0.1;
+  EXPECT_GT(remainder_ratio(a, core, masses), 0.0);
+}
+
 TEST(CoreBound, PreconditionerIsTheMatrixWithBlocksDeleted) {
   Random random(2);
   for (const Setting& setting : settings) {

@@ -33,14 +33,27 @@ double largest_eigenvalue(const Mat3& m) {
   return std::max(0.0, eigen.eigenvalues()[2] + 1e-7 * symmetric.norm());
 }
 
+// Of row i, those outside the core: as springs' are, but for rounding.
+bool has_symmetric_blocks(const BlockCsr& a, std::span<const std::uint8_t> core, Index i) {
+  const BlockPattern& p = *a.pattern;
+  for (Index k = p.row_start[i]; k < p.row_start[i + 1]; ++k) {
+    if (core[k] || k == p.diagonal[i]) continue;
+    const Eigen::Map<const Mat3, 0, Eigen::OuterStride<>> block(a.block(i, k), Eigen::OuterStride<>(p.width(i)));
+    if (!((block - block.transpose()).cwiseAbs().maxCoeff() <= 1e-9 * block.cwiseAbs().maxCoeff())) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 double remainder_ratio(const BlockCsr& a, std::span<const std::uint8_t> core, std::span<const double> masses) {
   assert(a.pattern->uniform_dim == 3 && static_cast<Index>(masses.size()) == a.rows());
   std::vector<double> ratio(masses.size(), 0.0);
   parallel_for(a.rows(), 256, [&](Index begin, Index end) {
-    for (Index i = begin; i < end; ++i) ratio[i] = largest_eigenvalue(-deleted_blocks(a, core, i)) / masses[i];
+    for (Index i = begin; i < end; ++i)
+      ratio[i] = has_symmetric_blocks(a, core, i) ? largest_eigenvalue(-deleted_blocks(a, core, i)) / masses[i] : -1.0;
   });
+  if (std::ranges::any_of(ratio, [](double r) { return r < 0.0; })) return -1.0;
   return ratio.empty() ? 0.0 : *std::ranges::max_element(ratio);
 }
 

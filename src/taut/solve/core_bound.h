@@ -16,7 +16,8 @@
 namespace taut {
 
 // ρ of a cloth matrix of 3x3 blocks and its core (one byte a block, 1: in the core); masses: kg, one a node. Every element's block rows sum
-// to zero, so D_R,i = -Σ A_ij over the blocks outside the core, whatever the elements. Rounded upwards. Parallel, allocates one double a
+// to zero, so D_R,i = -Σ A_ij over the blocks outside the core, whatever the elements. Rounded upwards. -1, not known,
+// where a block outside the core is not symmetric: no element of two nodes makes such a one. Parallel, allocates one double a
 // node.
 double remainder_ratio(const BlockCsr& a, std::span<const std::uint8_t> core, std::span<const double> masses);
 

