@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "taut/base/flush_subnormals.h"
 #include "taut/base/parallel.h"
 #include "taut/base/simd.h"
 #include "taut/linalg/small_block.h"
@@ -163,7 +164,10 @@ void BlockRemainder::analyze(std::shared_ptr<const BlockPattern> pattern, std::s
 }
 
 void BlockRemainder::update(const BlockCsr& a) {
-  parallel_for(a.rows(), rows_per_task, [&](Index begin, Index end) { update_rows(a, begin, end); });
+  parallel_for(a.rows(), rows_per_task, [&](Index begin, Index end) {
+    const FlushSubnormals flush;
+    update_rows(a, begin, end);
+  });
 }
 
 void BlockRemainder::update_rows(const BlockCsr& a, Index begin, Index end) {
@@ -180,13 +184,17 @@ double BlockRemainder::advance(double beta, std::span<const double> r, std::span
                                std::span<double> q) const {
   const Rows all = rows();
   return ordered_sum(
-      pattern_->rows(), [&](Index begin, Index end) { return advance_rows(all, begin, end, beta, r.data(), c.data(), p.data(), q.data()); },
+      pattern_->rows(), [&](Index begin, Index end) {
+        const FlushSubnormals flush;
+        return advance_rows(all, begin, end, beta, r.data(), c.data(), p.data(), q.data());
+      },
       rows_per_task, 1);
 }
 
 void BlockRemainder::subtract(std::span<const double> c, std::span<double> q) const {
   const Rows all = rows();
   parallel_for(pattern_->rows(), rows_per_task, [&](Index begin, Index end) {
+    const FlushSubnormals flush;
     for (Index i = begin; i < end; ++i) {
       double product[3];
       all.product(i, c.data(), product);
@@ -201,6 +209,7 @@ BlockRemainder::Ratios BlockRemainder::ratios(std::span<const double> masses) co
   const Index nodes = pattern_->rows(), tasks = (nodes + rows_per_task - 1) / rows_per_task;
   std::vector<Ratios> largest(static_cast<std::size_t>(tasks));
   parallel_for(tasks, 1, [&](Index begin, Index end) {
+    const FlushSubnormals flush;
     for (Index t = begin; t < end; ++t)
       largest[t] = largest_ratios(all, rows_per_task * t, std::min(nodes, rows_per_task * (t + 1)), masses.data());
   });

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "taut/base/flush_subnormals.h"
 #include "taut/base/parallel.h"
 #include "taut/base/simd.h"
 #include "taut/linalg/block_cholesky/numeric_factor.h"
@@ -273,6 +274,7 @@ bool NumericFactor<T>::subtract_condensed() {
   if (layout_.condensed == 0) return true;
   if (first_bad_condensed_.load(std::memory_order_relaxed) != none_is_bad) return false;
   parallel_for(static_cast<Index>(layout_.node.size()) - layout_.condensed, nodes_per_task, [&](Index begin, Index end) {
+    const FlushSubnormals flush;
     subtract_some(layout_, layout_.condensed + begin, layout_.condensed + end, gathered_.data());
   });
   return true;

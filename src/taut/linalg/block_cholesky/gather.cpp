@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "taut/base/flush_subnormals.h"
 #include "taut/base/parallel.h"
 #include "taut/base/simd.h"
 #include "taut/linalg/block_cholesky/numeric_factor.h"
@@ -160,6 +161,7 @@ void NumericFactor<T>::gather(const FactorSource& source) {
   // The last row ends where A does: nothing may be read behind it.
   const Index plain_end = is_plain ? p.rows() - 1 : 0;
   parallel_for(p.rows(), rows_per_task, [&](Index begin, Index end) {
+    const FlushSubnormals flush;
     for (Index i = begin; i < end; i += rows_at_once) {
       const Index stop = std::min(end, i + rows_at_once), plain_stop = std::clamp(plain_end, i, stop);
       gather_rows(rows, i, plain_stop, plain_end, gathered_.data());

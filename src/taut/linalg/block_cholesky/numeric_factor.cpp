@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "taut/base/flush_subnormals.h"
 #include "taut/base/parallel.h"
 #include "taut/base/simd.h"
 
@@ -78,6 +79,7 @@ Status NumericFactor<T>::factorize(const FactorSource& source, std::span<const I
   gather(source);
   if (!subtract_condensed()) return verdict(source.a);
   const auto run = [&](Index t) {
+    const FlushSubnormals flush;
     const FrontTask& task = layout_.task[t];
     T* scratch = scratch_.data() + scratch_of_thread_ * thread_slot();
     for (Index s = task.begin; s < task.end; ++s) {
@@ -116,7 +118,10 @@ void NumericFactor<T>::form_update(const Front& front, T* scratch, const T* pane
   if (tiles == 0) return;
   T* update = update_of(front, scratch);
   if (shared) {
-    parallel_for(tiles, 4, [&](Index begin, Index end) { kernels_.form_update(front.shape, panel, update, begin, end); });
+    parallel_for(tiles, 4, [&](Index begin, Index end) {
+      const FlushSubnormals flush;
+      kernels_.form_update(front.shape, panel, update, begin, end);
+    });
   } else {
     kernels_.form_update(front.shape, panel, update, 0, tiles);
   }
@@ -229,7 +234,10 @@ BadPivot NumericFactor<T>::factor_panel(const Front& front, T* panel, bool share
     const Index below = shared ? std::min(slabs, (end + kernels_.slab_rows - 1) / kernels_.slab_rows) : slabs;
     const BadPivot bad = kernels_.eliminate(front.shape, panel, first, below, begin, end);
     if (bad.column >= 0) return bad;
-    parallel_for(slabs - below, 2, [&](Index b, Index e) { kernels_.eliminate(front.shape, panel, below + b, below + e, begin, end); });
+    parallel_for(slabs - below, 2, [&](Index b, Index e) {
+      const FlushSubnormals flush;
+      kernels_.eliminate(front.shape, panel, below + b, below + e, begin, end);
+    });
   }
   return {};
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "taut/base/flush_subnormals.h"
 #include "taut/base/simd.h"
 #include "taut/linalg/block_cholesky/numeric_factor.h"
 #include "taut/linalg/block_cholesky/quad.h"
@@ -12,6 +13,7 @@ namespace taut {
 template <class T>
 void NumericFactor<T>::solve_forward(const FactorVectors& vectors, const double* b) {
   const auto up = [&](Index t) {
+    const FlushSubnormals flush;
     const Index end = layout_.task[t].end;
     for (Index s = layout_.task[t].begin; s < end; ++s) forward(s, vectors, b);
   };
@@ -21,6 +23,7 @@ void NumericFactor<T>::solve_forward(const FactorVectors& vectors, const double*
 template <class T>
 void NumericFactor<T>::solve_backward(const FactorVectors& vectors, double beta, double* x) {
   const auto down = [&](Index t) {
+    const FlushSubnormals flush;
     const Index begin = layout_.task[t].begin;
     for (Index s = layout_.task[t].end - 1; s >= begin; --s) backward(s, vectors, beta, x);
   };
