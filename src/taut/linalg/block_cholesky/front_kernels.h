@@ -61,9 +61,12 @@ struct FrontShape {
   }
   [[gnu::always_inline]] std::int64_t panel_size() const { return panel_offset(slabs()); }
   [[gnu::always_inline]] std::int64_t update_size() const { return rows > columns ? update_offset(slabs()) : 0; }
+  // An update is formed in tiles: of two slabs, counted from the last one up, R columns each, but the last tile has all columns around the
+  // diagonal. `upper` is the first of the two, counted from first_update_slab(), or -1 where that one is alone.
+  [[gnu::always_inline]] static std::int32_t tiles_of_two(std::int32_t upper) { return upper < 0 ? 1 : upper + 1; }
   [[gnu::always_inline]] std::int32_t update_tiles() const {
-    const std::int32_t n = slabs() - first_update_slab();
-    return rows > columns ? n * (n + 1) / 2 : 0;
+    const std::int32_t n = slabs() - first_update_slab(), twos = n / 2;
+    return rows <= columns ? 0 : n % 2 == 0 ? twos * twos : 1 + twos * (twos + 1);
   }
 };
 
@@ -101,7 +104,7 @@ struct FrontKernels {
   BadPivot (*eliminate)(const FrontShape& shape, T* panel, std::int32_t slab_begin, std::int32_t slab_end, std::int32_t begin,
                         std::int32_t end);
 
-  // U = -L21 L21ᵀ for the tiles begin ... end-1 of update_tiles(): R x R, slab after slab, from the left to the diagonal. Overwrites.
+  // U = -L21 L21ᵀ for the tiles begin ... end-1 of update_tiles(), from the left to the diagonal, then the next two slabs. Overwrites.
   void (*form_update)(const FrontShape& shape, const T* panel, T* update, std::int32_t begin, std::int32_t end);
 
   // Adds a child's update to a front: in the columns of the runs, the rows of the spreads from the diagonal on. `target` is the parent's

@@ -12,13 +12,15 @@ namespace {
 using Int = std::int32_t;
 
 // The registers of one block of the update: R/lanes x G accumulators, R/lanes for a column of the first operand, one for the broadcast second
-// operand. A block may be `wide` columns wide: eight accumulators hide the latency of two multiply-adds a cycle, larger blocks would only pad
-// fronts more, most of which are small. Where only half of a slab's rows are wanted, a block has half a slab's: with AVX-512 that is a narrower
+// operand. A block may be `wide` columns wide: eight accumulators hide the latency of two multiply-adds a cycle, wider slabs would only pad
+// fronts more, most of which are small. Where there are two slabs, one below the other, a block takes them together if there are registers
+// for it: then each number that is broadcast serves two multiply-adds, and it is these that take the time, not the loads (a quarter less).
+// Where only half of a slab's rows are wanted, a block has half a slab's: with AVX-512 that is a narrower
 // register, of which many processors take two at once. The elimination takes columns_at_once columns, to keep from storing what it needs next.
 #if defined(__AVX512F__)
-constexpr Int register_bytes = 64, block_vectors = 1, group = 4, wide = 8;
+constexpr Int register_bytes = 64, block_vectors = 1, group = 4, wide = 8, most_slabs = 2;
 #else
-constexpr Int block_vectors = 2, group = 4, wide = 4;
+constexpr Int block_vectors = 2, group = 4, wide = 4, most_slabs = 1;
 #if defined(__AVX2__)
 constexpr Int register_bytes = 32;
 #else
@@ -56,6 +58,8 @@ template <class T>
 constexpr Int slab_rows = block_vectors* lanes<T>;
 template <class T>
 constexpr Int panel_columns = 120 / slab_rows<T>* slab_rows<T>;
+// An update's product goes over so many columns of three slabs at a time, or fewer: they stay in the first-level cache.
+constexpr Int update_columns = 160;
 
 #define TAUT_INLINE [[gnu::always_inline]] inline
 
@@ -106,32 +110,34 @@ struct Select<false, A, B> {
   using Type = B;
 };
 
-// A register block: `Columns` columns of `Halves` halves of a slab, from its half `First` on.
-template <class T, Int First = 0, Int Halves = 2, Int Columns = group>
+// A register block: `Columns` columns of `Halves` halves of a slab, from its half `First` on; or of two whole slabs, the second of which lies
+// `next` elements after the first.
+template <class T, Int First = 0, Int Halves = 2, Int Columns = group, Int Slabs = 1>
 struct Block {
+  static_assert(Slabs == 1 || Halves == 2);
   static constexpr Int half = slab_rows<T> / 2, row = First * half;
   using Register = typename Select<Halves == 1, typename Simd<T>::Half, Vector<T>>::Type;
-  static constexpr Int count = static_cast<Int>(sizeof(Register) / sizeof(T)), vectors = Halves * half / count;
+  static constexpr Int count = static_cast<Int>(sizeof(Register) / sizeof(T)), in_slab = Halves * half / count, vectors = Slabs * in_slab;
   Register v[Columns][vectors];
 
-  TAUT_INLINE void load_from(const T* column) {
+  TAUT_INLINE static std::int64_t place(Int i, std::int64_t next) { return i / in_slab * next + row + i % in_slab * count; }
+  TAUT_INLINE void load_from(const T* column, std::int64_t next = 0) {
     for (Int j = 0; j < Columns; ++j)
-      for (Int i = 0; i < vectors; ++i) v[j][i] = load_as<Register>(column + j * slab_rows<T> + row + i * count);
+      for (Int i = 0; i < vectors; ++i) v[j][i] = load_as<Register>(column + j * slab_rows<T> + place(i, next));
   }
-  TAUT_INLINE void store_to(T* column) const {
+  TAUT_INLINE void store_to(T* column, std::int64_t next = 0) const {
     for (Int j = 0; j < Columns; ++j)
-      for (Int i = 0; i < vectors; ++i) store_as(column + j * slab_rows<T> + row + i * count, v[j][i]);
+      for (Int i = 0; i < vectors; ++i) store_as(column + j * slab_rows<T> + place(i, next), v[j][i]);
   }
   TAUT_INLINE void clear() {
     for (Int j = 0; j < Columns; ++j)
       for (Int i = 0; i < vectors; ++i) v[j][i] = Register{};
   }
-  // v -= A Bᵀ over k columns: a is a slab, b points at the group's first row in another one.
-  TAUT_INLINE void subtract_product(const T* a, const T* b, Int columns) {
-    a += row;
+  // v -= A Bᵀ over k columns: a is a slab, or the first of two, b points at the group's first row in another one.
+  TAUT_INLINE void subtract_product(const T* a, const T* b, Int columns, std::int64_t next = 0) {
     for (Int k = 0; k < columns; ++k, a += slab_rows<T>, b += slab_rows<T>) {
       Register column[vectors];
-      for (Int i = 0; i < vectors; ++i) column[i] = load_as<Register>(a + i * count);
+      for (Int i = 0; i < vectors; ++i) column[i] = load_as<Register>(a + place(i, next));
 #pragma GCC unroll 16
       for (Int j = 0; j < Columns; ++j) {
         const T factor = b[j];
@@ -168,8 +174,8 @@ TAUT_INLINE void with_rows(Int begin, Int end, Function f) {
 }
 
 // As many columns at once as the registers hold beside what they are subtracted from.
-template <class T>
-constexpr Int columns_at_once = block_vectors == 1 ? slab_rows<T> : group;
+template <class T, Int Slabs = 1>
+constexpr Int columns_at_once = Slabs == 2 ? wide : block_vectors == 1 ? slab_rows<T> : group;
 
 // Calls f.template operator()<Count>() with how many of `columns`, a multiple of the group, are taken at once.
 template <class T, Int Count = columns_at_once<T>, class Function>
@@ -190,32 +196,34 @@ struct Panel {
   T* slab(Int b) const { return values + shape.panel_offset(b); }
 };
 
-// Columns of one slab: subtracts the product over the columns 0 ... before-1, all of them eliminated, in pieces that stay in the
+// Columns of a slab, or of two: subtracts the product over the columns 0 ... before-1, all of them eliminated, in pieces that stay in the
 // first-level cache.
-template <class T>
-void subtract_earlier_panels(const Panel<T>& panel, T* slab, Int before, Int begin, Int end) {
+template <class T, Int Slabs>
+void subtract_earlier_panels(const Panel<T>& panel, T* slab, std::int64_t next, Int before, Int begin, Int end) {
   constexpr Int r = slab_rows<T>;
   for (Int k = 0; k < before; k += panel_columns<T>)
-    for (Int c = begin; c < end; c += group) {
-      Block<T> block;
-      block.load_from(slab + c * r);
-      block.subtract_product(slab + k * r, panel.slab(c / r) + c % r + k * r, panel_columns<T>);
-      block.store_to(slab + c * r);
-    }
+    for (Int c = begin; c < end; c += columns_at_once<T, Slabs>)
+      with_count<T, columns_at_once<T, Slabs>>(end - c, [&]<Int Count>() __attribute__((always_inline)) {
+        Block<T, 0, 2, Count, Slabs> block;
+        block.load_from(slab + c * r, next);
+        block.subtract_product(slab + k * r, panel.slab(c / r) + c % r + k * r, panel_columns<T>, next);
+        block.store_to(slab + c * r, next);
+      });
 }
 
-// The columns of the slab that lie left of its diagonal block: product and triangular solve in one pass.
-template <class T>
-void solve_columns(const Panel<T>& panel, T* slab, Int begin, Int end) {
+// The columns begin ... end-1 of a slab, or of two, that lie left of its diagonal block: product, over the columns from `from` on, and
+// triangular solve in one pass.
+template <class T, Int Slabs>
+void solve_columns(const Panel<T>& panel, T* slab, std::int64_t next, Int from, Int begin, Int end) {
   constexpr Int r = slab_rows<T>;
-  for (Int c = begin; c < end; c += columns_at_once<T>) {
+  for (Int c = begin; c < end; c += columns_at_once<T, Slabs>) {
     const T* pivot_rows = panel.slab(c / r) + c % r;
-    with_count<T>(end - c, [&]<Int Count>() __attribute__((always_inline)) {
-      Block<T, 0, 2, Count> block;
-      block.load_from(slab + c * r);
-      block.subtract_product(slab + begin * r, pivot_rows + begin * r, c - begin);
+    with_count<T, columns_at_once<T, Slabs>>(end - c, [&]<Int Count>() __attribute__((always_inline)) {
+      Block<T, 0, 2, Count, Slabs> block;
+      block.load_from(slab + c * r, next);
+      block.subtract_product(slab + from * r, pivot_rows + from * r, c - from, next);
       block.solve_triangle(pivot_rows + c * r);
-      block.store_to(slab + c * r);
+      block.store_to(slab + c * r, next);
     });
   }
 }
@@ -294,44 +302,72 @@ TAUT_INLINE void factor_columns(T* slab, Int from, Int diagonal, Int end, BadPiv
   });
 }
 
+// The pivots begin ... end-1 in one slab, where those before `left` have been.
+template <class T>
+BadPivot eliminate_slab(const Panel<T>& panel, Int b, Int begin, Int left, Int end) {
+  constexpr Int r = slab_rows<T>;
+  T* slab = panel.slab(b);
+  const Int diagonal = r * b, stop = end < diagonal + r ? end : diagonal + r;
+  if (begin > 0) subtract_earlier_panels<T, 1>(panel, slab, 0, begin, left, stop);
+  solve_columns<T, 1>(panel, slab, 0, begin, left, stop < diagonal ? stop : diagonal);
+  BadPivot bad;
+  if (stop > diagonal) factor_columns<T>(slab, begin, diagonal, stop, bad);
+  return bad;
+}
+
 template <class T>
 BadPivot eliminate(const FrontShape& shape, T* values, Int slab_begin, Int slab_end, Int begin, Int end) {
   constexpr Int r = slab_rows<T>;
   const Panel<T> panel{shape, values};
-  for (Int b = slab_begin; b < slab_end; ++b) {
-    T* slab = panel.slab(b);
-    const Int diagonal = r * b, stop = end < diagonal + r ? end : diagonal + r;
-    if (begin > 0) subtract_earlier_panels(panel, slab, begin, begin, stop);
-    solve_columns(panel, slab, begin, stop < diagonal ? stop : diagonal);
-    if (stop > diagonal) {
-      BadPivot bad;
-      factor_columns<T>(slab, begin, diagonal, stop, bad);
-      if (bad.column >= 0) return bad;
+  for (Int b = slab_begin; b < slab_end; b += most_slabs) {
+    const Int last = b + most_slabs < slab_end ? b + most_slabs : slab_end;
+    Int left = begin;
+    if constexpr (most_slabs == 2) {
+      if (const Int common = end < r * b ? end : r * b; last == b + 2 && common > begin) {
+        T* slab = panel.slab(b);
+        const std::int64_t next = panel.slab(b + 1) - slab;
+        if (begin > 0) subtract_earlier_panels<T, 2>(panel, slab, next, begin, begin, common);
+        solve_columns<T, 2>(panel, slab, next, begin, begin, common);
+        left = common;
+      }
     }
+    for (Int own = b; own < last && left < end; ++own)
+      if (const BadPivot bad = eliminate_slab(panel, own, begin, left, end); bad.column >= 0) return bad;
   }
   return {};
 }
 
-// One R x R tile of the update, or on the diagonal its lower part: the rows and columns that the front has.
-template <class T>
+// One R x R tile of the update, or on the diagonal its lower part: the rows and columns that the front has. Or one in each of two slabs, off the
+// diagonal.
+template <class T, Int Slabs = 1>
 void form_tile(const FrontShape& shape, const T* panel, T* update, Int row_slab, Int column_slab) {
   constexpr Int r = slab_rows<T>;
   const T* rows = panel + shape.panel_offset(row_slab);
   const T* others = panel + shape.panel_offset(column_slab);
   T* out = update + shape.update_offset(row_slab);
+  const std::int64_t next = Slabs == 2 ? shape.panel_offset(row_slab + 1) - shape.panel_offset(row_slab) : 0;
+  const std::int64_t next_out = Slabs == 2 ? shape.update_offset(row_slab + 1) - shape.update_offset(row_slab) : 0;
   const bool is_diagonal = row_slab == column_slab;
   const Int first = r * column_slab > shape.columns ? r * column_slab : shape.columns, end_row = shape.rows - r * row_slab;
   const Int last = r * (column_slab + 1) < shape.rows ? r * (column_slab + 1) : shape.rows;
-  for (Int k = 0; k < shape.columns || k == 0; k += panel_columns<T>) {
-    const Int count = shape.columns - k < panel_columns<T> ? shape.columns - k : panel_columns<T>;
+  // Pieces of one length; without columns there is one, which sets the update to zero.
+  const Int pieces = shape.columns > 0 ? (shape.columns + update_columns - 1) / update_columns : 1;
+  const Int piece = (shape.columns + pieces - 1) / pieces;
+  for (Int p = 0, k = 0; p < pieces; ++p, k += piece) {
+    const Int count = shape.columns - k < piece ? shape.columns - k : piece;
     const auto form_columns = [&]<Int Columns>(Int c) __attribute__((always_inline)) {
-      with_rows<T>(is_diagonal ? c % r : 0, end_row, [&]<Int First, Int Halves>() {
-        Block<T, First, Halves, Columns> block;
+      const auto form_block = [&]<Int First, Int Halves>() __attribute__((always_inline)) {
+        Block<T, First, Halves, Columns, Slabs> block;
         T* column = out + (c - shape.columns) * r;
-        k == 0 ? block.clear() : block.load_from(column);
-        block.subtract_product(rows + k * r, others + k * r + c % r, count);
-        block.store_to(column);
-      });
+        k == 0 ? block.clear() : block.load_from(column, next_out);
+        block.subtract_product(rows + k * r, others + k * r + c % r, count, next);
+        block.store_to(column, next_out);
+      };
+      if constexpr (Slabs == 2) {
+        form_block.template operator()<0, 2>();
+      } else {
+        with_rows<T>(is_diagonal ? c % r : 0, end_row, form_block);
+      }
     };
     Int c = first;
     for (; c % wide != 0; c += group) form_columns.template operator()<group>(c);
@@ -340,14 +376,25 @@ void form_tile(const FrontShape& shape, const T* panel, T* update, Int row_slab,
   }
 }
 
+// Slabs in twos from the last one up, so that the first may be alone: tile after tile, then what is around the diagonal.
 template <class T>
 void form_update(const FrontShape& shape, const T* panel, T* update, Int begin, Int end) {
-  const Int first = shape.first_update_slab();
-  Int row = 0;
-  while ((row + 1) * (row + 2) / 2 <= begin) ++row;
-  for (Int t = begin, column = begin - row * (row + 1) / 2; t < end; ++t) {
-    form_tile(shape, panel, update, first + row, first + column);
-    if (++column > row) ++row, column = 0;
+  const Int first = shape.first_update_slab(), slabs = shape.slabs();
+  Int upper = (slabs - first) % 2 == 0 ? first : first - 1;
+  for (Int before = 0; before < end; upper += 2) {
+    const Int lower = upper + 1, tiles = FrontShape::tiles_of_two(upper - first);
+    for (Int t = begin > before ? begin - before : 0; t < tiles && before + t < end; ++t) {
+      const Int column = first + t;
+      if (t == tiles - 1) {
+        if (upper >= first) form_tile(shape, panel, update, upper, upper), form_tile(shape, panel, update, lower, upper);
+        form_tile(shape, panel, update, lower, lower);
+      } else if (most_slabs == 2 && 2 * (shape.rows - slab_rows<T> * lower) > slab_rows<T>) {
+        form_tile<T, most_slabs>(shape, panel, update, upper, column);
+      } else {
+        form_tile(shape, panel, update, upper, column), form_tile(shape, panel, update, lower, column);
+      }
+    }
+    before += tiles;
   }
 }
 

@@ -118,7 +118,7 @@ void NumericFactor<T>::form_update(const Front& front, T* scratch, const T* pane
   if (tiles == 0) return;
   T* update = update_of(front, scratch);
   if (shared) {
-    parallel_for(tiles, 4, [&](Index begin, Index end) {
+    parallel_for(tiles, 2, [&](Index begin, Index end) {
       const FlushSubnormals flush;
       kernels_.form_update(front.shape, panel, update, begin, end);
     });
