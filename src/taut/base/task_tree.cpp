@@ -26,19 +26,29 @@ TaskTree::TaskTree(std::vector<Index> parent) : parent_(std::move(parent)), chil
   open_children_ = std::make_unique<std::atomic<Index>[]>(parent_.size());
 }
 
-void run_upwards(TaskTree& tree, const std::function<void(Index)>& body) {
-  if (thread_count() == 1 || tree.size() < 2) {
-    for (Index t = 0; t < tree.size(); ++t) body(t);
+void run_upwards(TaskTree& tree, const std::function<void(Index)>& body, const SideTasks& beside) {
+  const Index tasks = tree.size();
+  if (thread_count() == 1 || tasks < 2) {
+    for (Index t = 0; t < tasks; ++t) body(t);
+    for (Index k = 0; k < beside.count; ++k) beside.body(k);
     return;
   }
-  for (Index t = 0; t < tree.size(); ++t) tree.open_children_[t] = static_cast<Index>(tree.children(t).size());
-  detail::run_tasks(tree.leaves(), [&](Index t, detail::Spawner&) {
+  for (Index t = 0; t < tasks; ++t) tree.open_children_[t] = static_cast<Index>(tree.children(t).size());
+  std::atomic<Index> leaves_left = static_cast<Index>(tree.leaves().size());
+  std::atomic<bool> side_tasks_left = beside.count > 0;
+  // Side tasks are numbered behind the tree's.
+  detail::run_tasks(tree.leaves(), [&](Index t, detail::Spawner& spawn) {
+    if (t >= tasks) return beside.body(t - tasks);
+    if (tree.children(t).empty()) --leaves_left;
     // Whoever finishes the last child goes on with the parent.
     for (;;) {
       body(t);
       t = tree.parent(t);
-      if (t < 0 || --tree.open_children_[t] > 0) return;
+      if (t < 0 || --tree.open_children_[t] > 0) break;
     }
+    // What is left of the tree others are at work on. At the latest this is after the last root.
+    if (leaves_left == 0 && side_tasks_left.exchange(false))
+      for (Index k = 0; k < beside.count; ++k) spawn(tasks + k);
   });
 }
 

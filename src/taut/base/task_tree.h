@@ -4,6 +4,9 @@
 //   run_upwards(tree, f)     f(t) once for every task, after all its children
 //   run_downwards(tree, f)   f(t) once for every task, after its parent
 //
+// Near the root there are fewer tasks than threads. Side tasks, which need nothing of the tree's and nothing needs, fill that time: they begin
+// when a thread finds no other.
+//
 // Tasks are numbered so that parents come after their children. f is called from several threads; what it computes must not depend on which
 // tasks ran before, but for those above. A task may itself run parallel loops. With one thread the tasks run in the order of their numbers
 // (downwards: reversed). One run of a tree at a time: it keeps the counters of open children, so that a run allocates nothing itself.
@@ -30,12 +33,17 @@ class TaskTree {
   std::span<const Index> roots() const { return roots_; }
 
  private:
-  friend void run_upwards(TaskTree&, const std::function<void(Index)>&);
+  friend void run_upwards(TaskTree&, const std::function<void(Index)>&, const struct SideTasks&);
   std::vector<Index> parent_, child_start_, child_, leaves_, roots_;
   std::unique_ptr<std::atomic<Index>[]> open_children_;
 };
 
-void run_upwards(TaskTree& tree, const std::function<void(Index)>& body);
+struct SideTasks {
+  Index count = 0;
+  std::function<void(Index)> body;  // body(k) once for each of them
+};
+
+void run_upwards(TaskTree& tree, const std::function<void(Index)>& body, const SideTasks& beside = {});
 void run_downwards(const TaskTree& tree, const std::function<void(Index)>& body);
 
 }  // namespace taut

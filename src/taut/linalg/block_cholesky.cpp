@@ -59,15 +59,10 @@ struct BlockCholesky::Implementation {
   }
 
   // Single precision sees vectors whose largest entry is about 1: what is left of a residual may be far below its range.
-  double scale_for(std::span<const double> b) const {
-    const double largest = single ? largest_magnitude(b) : 0.0;
-    return largest > 0.0 && std::isfinite(largest) ? std::ldexp(1.0, -std::clamp(std::ilogb(largest), -1000, 1000)) : 1.0;
+  double scale_for(std::span<const double> b) const { return single ? scale_for(largest_magnitude(b)) : 1.0; }
+  double scale_for(double largest) const {
+    return single && largest > 0.0 && std::isfinite(largest) ? std::ldexp(1.0, -std::clamp(std::ilogb(largest), -1000, 1000)) : 1.0;
   }
-  FactorVectors scaled(std::span<const double> b) {
-    scale = scale_for(b);
-    return {start, scale};
-  }
-
   double forward_norm2() {
     return with_factor([&](auto& factor) { return factor.forward_norm2(); }) / (scale * scale);
   }
@@ -97,7 +92,7 @@ struct BlockCholesky::Implementation {
       if (status.ok() || precision != CholeskyPrecision::automatic) return status;
       ++fallbacks;
       FactorSource again = source;
-      again.visit = nullptr;
+      again.visit = nullptr, again.beside = nullptr;
       return factorize_in(false, again, loads);
     } catch (const std::bad_alloc&) {
       return {Outcome::out_of_memory, "Cholesky (block), factorisation: not enough memory"};
@@ -115,6 +110,7 @@ struct BlockCholesky::Implementation {
     if (outside.lumped) source.lumped = &unanalyzed;
     if (outside.replaced) source.replaced = parallelograms;
     if (outside.visit) source.visit = &outside.visit;
+    source.beside = &outside.beside;
     return factorize(source, loads);
   }
 
@@ -220,10 +216,12 @@ Status BlockCholesky::factorize(const BlockCsr& a, const NodeBasis& basis, std::
   return implementation_->factorize_with_basis(a, basis, loads, outside);
 }
 
-double BlockCholesky::solve_forward(std::span<const double> b) {
+double BlockCholesky::solve_forward(std::span<const double> b) { return solve_forward(b, implementation_->single ? largest_magnitude(b) : 0.0); }
+
+double BlockCholesky::solve_forward(std::span<const double> b, double largest) {
   Implementation& me = *implementation_;
-  const FactorVectors vectors = me.scaled(b);
-  me.with_factor([&](auto& factor) { factor.solve_forward(vectors, b.data()); });
+  me.scale = me.scale_for(largest);
+  me.with_factor([&](auto& factor) { factor.solve_forward({me.start, me.scale}, b.data()); });
   return me.forward_norm2();
 }
 

@@ -32,6 +32,7 @@
 // Sources: Liu 1992, SIAM Review 34 (multifrontal method); Davis 2006, Direct Methods for Sparse Linear Systems (trees, counts);
 // Karypis & Kumar 1998 (METIS).
 
+#include "taut/base/task_tree.h"
 #include "taut/linalg/node_basis.h"
 #include "taut/linalg/parallelogram.h"
 #include "taut/linalg/sparse_cholesky.h"
@@ -50,6 +51,7 @@ struct BlocksOutside {
   // diagonal.
   bool replaced = false;
   RowsVisitor visit = {};  // sees all rows of A, once
+  SideTasks beside = {};   // done during the factorisation, after that, where threads would be idle
 };
 
 enum class CholeskyPrecision { double_precision, single_precision, automatic };
@@ -93,6 +95,8 @@ class BlockCholesky : public SparseCholesky {
   Status factorize(const BlockCsr& a, const NodeBasis& basis, std::span<const double> b, double& b_norm2, std::span<const double> r,
                    double& r_norm2, const BlocksOutside& outside = {});
   double solve_forward(std::span<const double> b);
+  // For a caller who knows largest_magnitude(b).
+  double solve_forward(std::span<const double> b, double largest);
   void solve_backward(double beta, std::span<double> x);
   Status solve(std::span<const double> b, std::span<double> x) override;
   // Of the matrix analysed, or of the matrix last factorised.

@@ -4,6 +4,8 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <functional>
+#include <iterator>
 
 #include "taut/base/flush_subnormals.h"
 #include "taut/base/parallel.h"
@@ -14,105 +16,200 @@ namespace taut {
 
 namespace {
 
-constexpr Index rows_per_task = 512;
-constexpr Index overread = 3;  // entries behind a block's last row that a load of four takes in
+constexpr Index rows_per_task = 512;  // when blocks are copied
+// Of a batch: their sums stay in the cache, and what acts on rows of two batches is little. Small matrices are cut for some threads.
+constexpr Index least_rows = 256, most_rows = 1024, batches_wanted = 16;
+constexpr Index overread = 7;  // entries behind a block that a load of sixteen takes in
 
-using Four = double __attribute__((vector_size(32), aligned(8), may_alias));
+using Four = double __attribute__((vector_size(32)));
+using FourAnywhere = double __attribute__((vector_size(32), aligned(8), may_alias));
 using FourSingle = float __attribute__((vector_size(16), aligned(4), may_alias));
+using SixteenSingle = float __attribute__((vector_size(64)));
+using SixteenAnywhere = float __attribute__((vector_size(64), aligned(4), may_alias));
+using EightSingle = float __attribute__((vector_size(32)));
+using SixteenMask = std::int32_t __attribute__((vector_size(64)));
 
-using Term = BlockRemainder::Term;
-using Corner = BlockRemainder::Corner;
-
-TAUT_ALWAYS_INLINE void add_three(const double* x, Four& to) { to += Four{x[0], x[1], x[2], 0.0}; }
-
-// Row by row, lane by lane.
-TAUT_ALWAYS_INLINE void add_product(const float* block, const Four& x, Four (&sum)[3]) {
-  for (Index r = 0; r < 3; ++r) sum[r] += __builtin_convertvector(*reinterpret_cast<const FourSingle*>(block + 3 * r), Four) * x;
-}
+Index batch_rows(Index rows) { return std::clamp((rows + batches_wanted - 1) / batches_wanted, least_rows, most_rows); }
 
 }  // namespace
 
-// E's rows as they are now.
-struct BlockRemainder::Rows {
-  const Index *row_start, *row_end, *corner_start;  // corner_start: null where nothing is replaced
-  const Term* term;
-  const Corner* corner;
+struct BlockRemainder::Pieces {
+  Range springs[2], cells;  // the second springs: none where they are replaced
+  const Spring* spring;
+  const Cell* cell;
   const float* values;
+  Index first_row, rows;
+  bool has_last_node;
 
-  TAUT_ALWAYS_INLINE void product(Index i, const double* c, double* result) const {
-    Four sum[3] = {};
-    Four own = {};
-    add_three(c + 3 * i, own);
-    for (Index k = row_start[i]; k < row_end[i]; ++k) {
-      Four x = -own;
-      add_three(c + term[k].column_dof, x);
-      add_product(values + Offset{9} * term[k].block, x, sum);
+  // Calls f(block, places, nodes) for each spring, or cell, of a range, with where its nodes are in a batch's sums. Behind those of the last row is a
+  // place for all nodes of other batches.
+  template <class Piece, class Function>
+  TAUT_ALWAYS_INLINE void visit(const Piece* list, const Range& range, Function f) const {
+    constexpr Index count = static_cast<Index>(std::size(Piece{}.node));
+    Index place[count];
+    for (const Piece* s = list + range.begin; s < list + range.split; ++s) {
+      for (Index k = 0; k < count; ++k) place[k] = s->node[k] - first_row;
+      f(values + Offset{9} * s->block, place, s->node);
     }
-    if (corner_start)
-      for (const Corner* at = corner + corner_start[i]; at < corner + corner_start[i + 1]; ++at) {
-        Four x = own, sides = {};
-        add_three(c + at->opposite_dof, x);
-        for (const Index dof : at->side_dof) add_three(c + dof, sides);
-        x -= sides;
-        add_product(values + Offset{9} * at->block, x, sum);
-      }
-    for (Index r = 0; r < 3; ++r) result[r] = (sum[r][0] + sum[r][2]) + sum[r][1];
+    for (const Piece* s = list + range.split; s < list + range.end; ++s) {
+      for (Index k = 0; k < count; ++k)
+        place[k] = static_cast<Index>(std::min(static_cast<std::uint32_t>(s->node[k]) - static_cast<std::uint32_t>(first_row), static_cast<std::uint32_t>(rows)));
+      f(values + Offset{9} * s->block, place, s->node);
+    }
   }
 };
 
 namespace {
 
-TAUT_MULTIVERSION double advance_rows(const BlockRemainder::Rows& rows, Index begin, Index end, double beta, const double* r, const double* c,
-                                      double* p, double* q) {
-  double energy = 0.0;
-  for (Index i = begin; i < end; ++i) {
-    double product[3];
-    rows.product(i, c, product);
-    for (Index j = 3 * i; j < 3 * i + 3; ++j) {
-      p[j] = r[j] + beta * p[j];
-      q[j] = p[j] + product[j - 3 * i];
-      energy += c[j] * q[j];
+using Pieces = BlockRemainder::Pieces;
+using Sums = Four[most_rows + 1];
+
+// Adds a node's three numbers, and one that is nobody's.
+template <bool Exact>
+TAUT_ALWAYS_INLINE void add_three(const double* c, Index node, Four& to) {
+  const double* x = c + Offset{3} * node;
+  if constexpr (Exact) {
+    to += Four{x[0], x[1], x[2], 0.0};
+  } else {
+    to += *reinterpret_cast<const FourAnywhere*>(x);
+  }
+}
+
+// x := B x, B symmetric.
+TAUT_ALWAYS_INLINE void multiply(const float* block, Four& x) {
+  Four product = {};
+  for (Index r = 0; r < 3; ++r) product += __builtin_convertvector(*reinterpret_cast<const FourSingle*>(block + 3 * r), Four) * x[r];
+  x = product;
+}
+
+template <bool Exact>
+TAUT_ALWAYS_INLINE void add_products(const Pieces& of, const double* c, Sums& sum) {
+  for (const auto& springs : of.springs)
+    of.visit(of.spring, springs, [&](const float* block, const Index* place, const Index* node) __attribute__((always_inline)) {
+      Four force = {}, from = {};
+      add_three<Exact>(c, node[1], force);
+      add_three<Exact>(c, node[0], from);
+      force -= from;
+      multiply(block, force);
+      sum[place[0]] += force;
+      sum[place[1]] -= force;
+    });
+  of.visit(of.cell, of.cells, [&](const float* block, const Index* place, const Index* node) __attribute__((always_inline)) {
+    Four force = {}, sides = {};
+    add_three<Exact>(c, node[0], force);
+    add_three<Exact>(c, node[2], force);
+    add_three<Exact>(c, node[1], sides);
+    add_three<Exact>(c, node[3], sides);
+    force -= sides;
+    multiply(block, force);
+    sum[place[0]] += force;
+    sum[place[1]] -= force;
+    sum[place[2]] += force;
+    sum[place[3]] -= force;
+  });
+}
+
+TAUT_ALWAYS_INLINE void add_products(const Pieces& of, const double* c, Sums& sum) {
+  of.has_last_node ? add_products<true>(of, c, sum) : add_products<false>(of, c, sum);
+}
+
+TAUT_MULTIVERSION double advance_batch(const Pieces& of, double beta, const double* r, const double* c, double* p, double* q) {
+  Sums sum;
+  for (Index i = 0; i < of.rows; ++i) {
+    const Offset j = Offset{3} * (of.first_row + i);
+    if (beta == 0.0) {
+      for (Index k = 0; k < 3; ++k) p[j + k] = r[j + k];
+    } else {
+      for (Index k = 0; k < 3; ++k) p[j + k] = r[j + k] + beta * p[j + k];
     }
+    sum[i] = Four{p[j], p[j + 1], p[j + 2], 0.0};
+  }
+  sum[of.rows] = Four{};
+  add_products(of, c, sum);
+  double energy = 0.0;
+  for (Index i = 0; i < of.rows; ++i) {
+    const Offset j = Offset{3} * (of.first_row + i);
+    for (Index k = 0; k < 3; ++k) q[j + k] = sum[i][k];
+    energy += (c[j] * sum[i][0] + c[j + 2] * sum[i][2]) + c[j + 1] * sum[i][1];
   }
   return energy;
 }
 
-TAUT_ALWAYS_INLINE void add_block(const float* block, FourSingle (&sum)[3]) {
-  for (Index r = 0; r < 3; ++r) sum[r] += *reinterpret_cast<const FourSingle*>(block + 3 * r);
+TAUT_MULTIVERSION void subtract_batch(const Pieces& of, const double* c, double* q) {
+  Sums sum;
+  std::fill(sum, sum + of.rows + 1, Four{});
+  add_products(of, c, sum);
+  for (Index i = 0; i < of.rows; ++i)
+    for (Index k = 0; k < 3; ++k) q[Offset{3} * (of.first_row + i) + k] -= sum[i][k];
 }
 
-TAUT_ALWAYS_INLINE double squared_norm(const FourSingle (&block)[3]) {
-  Four sum = {};
-  for (Index r = 0; r < 3; ++r) {
-    const Four row = __builtin_convertvector(block[r], Four);
-    sum += row * row;
-  }
-  return (sum[0] + sum[2]) + sum[1];
+// Of the first nine.
+TAUT_ALWAYS_INLINE float squared_norm(const SixteenSingle& block) {
+  constexpr SixteenMask nine = {-1, -1, -1, -1, -1, -1, -1, -1, -1};
+  const SixteenSingle all = (SixteenSingle)((SixteenMask)(block * block) & nine);
+  const EightSingle eight = __builtin_shufflevector(all, all, 0, 1, 2, 3, 4, 5, 6, 7) + __builtin_shufflevector(all, all, 8, 9, 10, 11, 12, 13, 14, 15);
+  const FourSingle four = __builtin_shufflevector(eight, eight, 0, 1, 2, 3) + __builtin_shufflevector(eight, eight, 4, 5, 6, 7);
+  return (four[0] + four[2]) + (four[1] + four[3]);
 }
 
-// Of the rows, squared.
-TAUT_MULTIVERSION BlockRemainder::Ratios largest_ratios(const BlockRemainder::Rows& rows, Index begin, Index end, const double* masses) {
-  BlockRemainder::Ratios largest;
-  for (Index i = begin; i < end; ++i) {
-    const double weight = 1.0 / (masses[i] * masses[i]);
-    FourSingle dropped[3] = {}, replaced[3] = {};
-    for (Index k = rows.row_start[i]; k < rows.row_end[i]; ++k) add_block(rows.values + Offset{9} * rows.term[k].block, dropped);
-    const double ratio = weight * squared_norm(dropped);
-    largest.dropped = ratio > largest.dropped ? ratio : largest.dropped;
-    if (!rows.corner_start) continue;
-    for (const Corner* at = rows.corner + rows.corner_start[i]; at < rows.corner + rows.corner_start[i + 1]; ++at)
-      add_block(rows.values + Offset{9} * at->block, replaced);
-    const double other = weight * squared_norm(replaced);
-    largest.replaced = other > largest.replaced ? other : largest.replaced;
+// Of the sums of blocks at the batch's rows, relative to the rows' masses.
+TAUT_ALWAYS_INLINE float largest_square(const Pieces& of, const double* masses, const SixteenSingle* sum) {
+  float largest = 0.0f;
+  for (Index i = 0; i < of.rows; ++i) {
+    const float square = squared_norm(sum[i] * static_cast<float>(1.0 / masses[of.first_row + i]));
+    largest = square > largest ? square : largest;
   }
   return largest;
 }
 
+// Of the rows, squared.
+TAUT_MULTIVERSION BlockRemainder::Ratios largest_ratios(const Pieces& of, const double* masses) {
+  BlockRemainder::Ratios largest;
+  SixteenSingle sum[most_rows + 1];
+  const auto add = [&](const float* block, const Index* place, auto count) __attribute__((always_inline)) {
+    for (Index k = 0; k < count; ++k) sum[place[k]] += *reinterpret_cast<const SixteenAnywhere*>(block);
+  };
+  std::fill(sum, sum + of.rows + 1, SixteenSingle{});
+  for (const auto& springs : of.springs)
+    of.visit(of.spring, springs, [&](const float* block, const Index* place, const Index*) __attribute__((always_inline)) {
+      add(block, place, std::integral_constant<Index, 2>{});
+    });
+  largest.dropped = largest_square(of, masses, sum);
+  if (of.cells.begin == of.cells.end) return largest;
+  std::fill(sum, sum + of.rows + 1, SixteenSingle{});
+  of.visit(of.cell, of.cells, [&](const float* block, const Index* place, const Index*) __attribute__((always_inline)) {
+    add(block, place, std::integral_constant<Index, 4>{});
+  });
+  largest.replaced = largest_square(of, masses, sum);
+  return largest;
+}
+
+// For each batch of rows what acts on one of them, in the order of the list.
+template <class Piece>
+std::vector<std::vector<Piece>> in_batches(const std::vector<Piece>& list, Index rows_per_batch, std::size_t batches) {
+  std::vector<std::vector<Piece>> result(batches);
+  for (const Piece& piece : list) {
+    std::array<Index, std::size(Piece{}.node)> of;
+    std::ranges::transform(piece.node, of.begin(), [&](Index node) { return node / rows_per_batch; });
+    std::ranges::sort(of);
+    for (std::size_t k = 0; k < of.size(); ++k)
+      if (k == 0 || of[k] != of[k - 1]) result[of[k]].push_back(piece);
+  }
+  return result;
+}
+
 }  // namespace
 
-BlockRemainder::Rows BlockRemainder::rows() const {
-  return {row_start_.data(), replaced_ ? row_split_.data() : row_start_.data() + 1, replaced_ ? corner_start_.data() : nullptr,
-          term_.data(),      corner_.data(),                                        values_.data()};
+BlockRemainder::Pieces BlockRemainder::pieces(const Batch& b) const {
+  constexpr Range none{0, 0, 0};
+  return {{b.dropped, replaced_ ? none : b.replaceable},
+          replaced_ ? b.cells : none,
+          spring_.data(),
+          cell_.data(),
+          values_.data(),
+          b.first_row,
+          b.end_row - b.first_row,
+          b.has_last_node};
 }
 
 void BlockRemainder::analyze(std::shared_ptr<const BlockPattern> pattern, std::span<const std::uint8_t> mask,
@@ -120,44 +217,50 @@ void BlockRemainder::analyze(std::shared_ptr<const BlockPattern> pattern, std::s
   const BlockPattern& p = *pattern;
   assert(static_cast<Index>(mask.size()) == p.blocks() && p.uniform_dim == 3);
   std::vector<std::uint8_t> is_replaceable(mask.size(), 0);
-  for (const Parallelogram& of : replaceable) is_replaceable[of.block] = is_replaceable[of.opposite] = 1;
+  for (const Parallelogram& of : replaceable) is_replaceable[of.block] = 1;
   std::vector<Index> copied(mask.size(), -1);
   copy_start_.assign(1, 0);
   copy_.clear();
-  row_start_.assign(1, 0);
-  row_split_.clear();
-  term_.clear();
+  std::vector<Spring> dropped, replaced;
+  std::vector<Cell> cells;
   for (Index i = 0; i < p.rows(); ++i) {
     for (Index k = p.diagonal[i] + 1; k < p.row_start[i + 1]; ++k) {
       if (mask[k]) continue;
-      copied[k] = copied[p.find(p.column[k], i)] = static_cast<Index>(copy_.size());
+      copied[k] = static_cast<Index>(copy_.size());
       copy_.push_back(p.block_offset[k]);
+      (is_replaceable[k] ? replaced : dropped).push_back({copied[k], {i, p.column[k]}});
     }
     copy_start_.push_back(static_cast<Index>(copy_.size()));
   }
-  for (Index i = 0; i < p.rows(); ++i) {
-    for (const std::uint8_t last : {0, 1}) {
-      if (last) row_split_.push_back(static_cast<Index>(term_.size()));
-      for (Index k = p.row_start[i]; k < p.row_start[i + 1]; ++k)
-        if (!mask[k] && k != p.diagonal[i] && is_replaceable[k] == last) term_.push_back({copied[k], p.column_dof[k]});
-    }
-    row_start_.push_back(static_cast<Index>(term_.size()));
-  }
+  for (const Parallelogram& of : replaceable) cells.push_back({copied[of.block], {of.a, of.b, of.c, of.d}});
   values_.assign(9 * copy_.size() + overread, 0.0f);
 
-  const auto corners = [](const Parallelogram& of) { return std::array{of.a, of.b, of.c, of.d}; };
-  corner_start_.assign(static_cast<std::size_t>(p.rows()) + 1, 0);
-  for (const Parallelogram& of : replaceable)
-    for (const Index i : corners(of)) ++corner_start_[i + 1];
-  for (Index i = 0; i < p.rows(); ++i) corner_start_[i + 1] += corner_start_[i];
-  corner_.resize(4 * replaceable.size());
-  std::vector<Index> next(corner_start_.begin(), corner_start_.end() - 1);
-  for (const Parallelogram& of : replaceable) {
-    const auto corner = corners(of);
-    for (std::size_t k = 0; k < 4; ++k) {
-      corner_[next[corner[k]]++] = {copied[of.block], p.dof_start[corner[(k + 2) % 4]],
-                                    {p.dof_start[corner[(k + 1) % 4]], p.dof_start[corner[(k + 3) % 4]]}};
-    }
+  const Index rows = batch_rows(p.rows());
+  const std::size_t batches = static_cast<std::size_t>((p.rows() + rows - 1) / rows);
+  const auto dropped_in = in_batches(dropped, rows, batches), replaced_in = in_batches(replaced, rows, batches);
+  const auto cells_in = in_batches(cells, rows, batches);
+  batch_.clear(), spring_.clear(), cell_.clear();
+  for (std::size_t b = 0; b < batches; ++b) {
+    Batch batch;
+    batch.first_row = rows * static_cast<Index>(b);
+    batch.end_row = std::min(p.rows(), batch.first_row + rows);
+    batch.has_last_node = false;
+    const auto add = [&](const auto& from, auto& to) {
+      const auto is_within = [&](const auto& piece) {
+        return std::ranges::all_of(piece.node, [&](Index node) { return node >= batch.first_row && node < batch.end_row; });
+      };
+      Range range{static_cast<Index>(to.size()), 0, 0};
+      std::ranges::copy_if(from, std::back_inserter(to), is_within);
+      range.split = static_cast<Index>(to.size());
+      std::ranges::copy_if(from, std::back_inserter(to), std::not_fn(is_within));
+      range.end = static_cast<Index>(to.size());
+      batch.has_last_node |= std::ranges::any_of(from, [&](const auto& piece) { return std::ranges::count(piece.node, p.rows() - 1) > 0; });
+      return range;
+    };
+    batch.dropped = add(dropped_in[b], spring_);
+    batch.replaceable = add(replaced_in[b], spring_);
+    batch.cells = add(cells_in[b], cell_);
+    batch_.push_back(batch);
   }
   replaced_ = false;
   pattern_ = std::move(pattern);
@@ -182,45 +285,46 @@ void BlockRemainder::update_rows(const BlockCsr& a, Index begin, Index end) {
 
 double BlockRemainder::advance(double beta, std::span<const double> r, std::span<const double> c, std::span<double> p,
                                std::span<double> q) const {
-  const Rows all = rows();
   return ordered_sum(
-      pattern_->rows(), [&](Index begin, Index end) {
+      static_cast<Index>(batch_.size()),
+      [&](Index b, Index) {
         const FlushSubnormals flush;
-        return advance_rows(all, begin, end, beta, r.data(), c.data(), p.data(), q.data());
+        return advance_batch(pieces(batch_[b]), beta, r.data(), c.data(), p.data(), q.data());
       },
-      rows_per_task, 1);
+      1, 1);
 }
 
 void BlockRemainder::subtract(std::span<const double> c, std::span<double> q) const {
-  const Rows all = rows();
-  parallel_for(pattern_->rows(), rows_per_task, [&](Index begin, Index end) {
+  parallel_for(static_cast<Index>(batch_.size()), 1, [&](Index begin, Index end) {
     const FlushSubnormals flush;
-    for (Index i = begin; i < end; ++i) {
-      double product[3];
-      all.product(i, c.data(), product);
-      for (Index r = 0; r < 3; ++r) q[3 * i + r] -= product[r];
-    }
+    for (Index b = begin; b < end; ++b) subtract_batch(pieces(batch_[b]), c.data(), q.data());
   });
 }
 
-BlockRemainder::Ratios BlockRemainder::ratios(std::span<const double> masses) const {
-  constexpr double up = 1.0 + 1e-6;  // the blocks are rounded
-  const Rows all = rows();
-  const Index nodes = pattern_->rows(), tasks = (nodes + rows_per_task - 1) / rows_per_task;
-  std::vector<Ratios> largest(static_cast<std::size_t>(tasks));
-  parallel_for(tasks, 1, [&](Index begin, Index end) {
-    const FlushSubnormals flush;
-    for (Index t = begin; t < end; ++t)
-      largest[t] = largest_ratios(all, rows_per_task * t, std::min(nodes, rows_per_task * (t + 1)), masses.data());
-  });
+BlockRemainder::Ratios BlockRemainder::ratios_in(Index batch, std::span<const double> masses) const {
+  constexpr double up = 1.0 + 2e-6;  // the blocks and their sums are rounded
+  const FlushSubnormals flush;
+  const Ratios squares = largest_ratios(pieces(batch_[batch]), masses.data());
+  return {up * std::sqrt(squares.dropped), up * std::sqrt(squares.replaced)};
+}
+
+BlockRemainder::Ratios BlockRemainder::largest(std::span<const Ratios> of_batches) {
   Ratios result;
-  for (const Ratios& of : largest) result = {std::max(result.dropped, of.dropped), std::max(result.replaced, of.replaced)};
-  return {up * std::sqrt(result.dropped), up * std::sqrt(result.replaced)};
+  for (const Ratios& of : of_batches) result = {std::max(result.dropped, of.dropped), std::max(result.replaced, of.replaced)};
+  return result;
+}
+
+BlockRemainder::Ratios BlockRemainder::ratios(std::span<const double> masses) const {
+  std::vector<Ratios> of_batches(batch_.size());
+  parallel_for(batches(), 1, [&](Index begin, Index end) {
+    for (Index b = begin; b < end; ++b) of_batches[b] = ratios_in(b, masses);
+  });
+  return largest(of_batches);
 }
 
 Offset BlockRemainder::bytes() const {
   const auto bytes_of = [](const auto& list) { return static_cast<Offset>(list.size() * sizeof(list[0])); };
-  return bytes_of(values_) + bytes_of(copy_start_) + bytes_of(copy_) + bytes_of(term_) + bytes_of(corner_) + bytes_of(row_start_) + bytes_of(row_split_) + bytes_of(corner_start_);
+  return bytes_of(values_) + bytes_of(copy_start_) + bytes_of(copy_) + bytes_of(batch_) + bytes_of(spring_) + bytes_of(cell_);
 }
 
 }  // namespace taut

@@ -17,7 +17,9 @@
 // blocks are kept in single precision too, which adds less than that: their relative error u acts on differences, |δ(E c)| in the norm of M⁻¹
 // is at most some u sqrt(ρ Σ_ij |A_ij| |c_j - c_i|²), next to nothing where c is smooth. Sums are in double precision.
 //
-// 3x3 blocks, each of them symmetric, as springs' are: so one copy serves both of its rows. With constraints (linalg/node_basis.h), p and q hold something in constrained directions that nobody reads.
+// 3x3 blocks, each of them symmetric, as springs' are: so each is kept once, and multiplied once for all its nodes, the two of a spring or the
+// four of a parallelogram. Rows are taken in batches, each with all that acts on one of them: what acts on rows of several is multiplied
+// in each. With constraints (linalg/node_basis.h), p and q hold something in constrained directions that nobody reads.
 
 #include <cstdint>
 #include <memory>
@@ -40,7 +42,7 @@ class BlockRemainder {
   void update_rows(const BlockCsr& a, Index begin, Index end);
   // Whether the parallelograms do stand in, from now on.
   void set_replaced(bool replaced) { replaced_ = replaced; }
-  // p = r + beta p, q = p + E c; returns cᵀ q. Same bits for any number of threads.
+  // p = r + beta p, q = p + E c; returns cᵀ q. Where beta is 0, p may hold anything. Same bits for any number of threads.
   double advance(double beta, std::span<const double> r, std::span<const double> c, std::span<double> p, std::span<double> q) const;
   // q -= E c
   void subtract(std::span<const double> c, std::span<double> q) const;
@@ -50,32 +52,43 @@ class BlockRemainder {
     double dropped = 0.0, replaced = 0.0;
   };
   Ratios ratios(std::span<const double> masses) const;
-  Offset nonzeros() const { return Offset{9} * static_cast<Offset>(term_.size()); }
+  // The same in parts, which are independent of each other: the largest at the nodes of each of so many batches.
+  Index batches() const { return static_cast<Index>(batch_.size()); }
+  Ratios ratios_in(Index batch, std::span<const double> masses) const;
+  static Ratios largest(std::span<const Ratios> of_batches);
+  Offset nonzeros() const { return Offset{18} * static_cast<Offset>(copy_.size()); }
   Offset bytes() const;
 
-  // A block in one of its rows: which copy, and its column's first unknown.
-  struct Term {
-    Index block, column_dof;
+  // Which copy of a block, and the nodes it acts between.
+  struct Spring {
+    Index block, node[2];
   };
-  // A parallelogram at one of its corners: which block, and the first unknowns of the corner opposite and of the two between.
-  struct Corner {
-    Index block, opposite_dof, side_dof[2];
+  // ... and the corners of the parallelogram, in turn.
+  struct Cell {
+    Index block, node[4];
   };
-
-  struct Rows;  // what the products read
+  // Of a list: first those whose nodes are all in the batch, then the others.
+  struct Range {
+    Index begin, split, end;
+  };
+  struct Batch {
+    Index first_row, end_row;
+    Range dropped, replaceable;  // springs
+    Range cells;
+    bool has_last_node;  // behind whose three numbers a vector may end
+  };
+  struct Pieces;  // what a batch's products read
 
  private:
-  Rows rows() const;
+  Pieces pieces(const Batch& batch) const;
 
   std::shared_ptr<const BlockPattern> pattern_;
   bool replaced_ = false;
   std::vector<Index> copy_start_{0};  // per row: the blocks copied from it, those right of the diagonal ...
   std::vector<Index> copy_;           // ... and their first columns in the row's panel of A
-  std::vector<Index> row_start_{0};
-  std::vector<Index> row_split_;     // per row: its terms from here on are replaceable
-  std::vector<Term> term_;
-  std::vector<Index> corner_start_;  // per row
-  std::vector<Corner> corner_;
+  std::vector<Batch> batch_;
+  std::vector<Spring> spring_;  // batch after batch, in the order of their blocks
+  std::vector<Cell> cell_;
   LargeVector<float> values_;  // row-major blocks, and a few entries that are read too many
 };
 

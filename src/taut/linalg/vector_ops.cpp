@@ -1,5 +1,6 @@
 #include "taut/linalg/vector_ops.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 
@@ -45,12 +46,24 @@ TAUT_MULTIVERSION double largest_kernel(const double* a, Index n) {
   return largest;
 }
 
-TAUT_MULTIVERSION void step_kernel(double alpha, const double* p, const double* q, double* y, double* r, Index n) {
-#pragma omp simd
+TAUT_MULTIVERSION double step_kernel(double alpha, const double* p, const double* q, double* y, double* r, Index n) {
+  double largest = 0.0;
+#pragma omp simd reduction(max : largest)
   for (Index i = 0; i < n; ++i) {
     y[i] += alpha * p[i];
-    r[i] -= alpha * q[i];
+    const double rest = r[i] - alpha * q[i], size = rest < 0.0 ? -rest : rest;
+    r[i] = rest;
+    largest = size > largest ? size : largest;
   }
+  return largest;
+}
+
+// 0, or NaN if one of them is not finite.
+TAUT_MULTIVERSION double nothing_of(const double* a, Index n) {
+  double s = 0.0;
+#pragma omp simd reduction(+ : s)
+  for (Index i = 0; i < n; ++i) s += 0.0 * a[i];
+  return s;
 }
 
 struct Largest {
@@ -101,16 +114,27 @@ double largest_magnitude(std::span<const double> a) {
       .value;
 }
 
-void step_along(double alpha, std::span<const double> p, std::span<const double> q, std::span<double> y, std::span<double> r) {
+double step_along(double alpha, std::span<const double> p, std::span<const double> q, std::span<double> y, std::span<double> r) {
   assert(p.size() == q.size() && p.size() == y.size() && p.size() == r.size());
-  parallel_for(static_cast<Index>(p.size()), entries_per_task,
-               [&](Index begin, Index end) { step_kernel(alpha, &p[begin], &q[begin], &y[begin], &r[begin], end - begin); });
+  return ordered_sum<Largest>(static_cast<Index>(p.size()),
+                              [&](Index begin, Index end) {
+                                return Largest{step_kernel(alpha, &p[begin], &q[begin], &y[begin], &r[begin], end - begin)};
+                              })
+      .value;
+}
+
+void copy(std::span<const double> x, std::span<double> y) {
+  assert(x.size() == y.size());
+  parallel_for(static_cast<Index>(x.size()), entries_per_task,
+               [&](Index begin, Index end) { std::copy(x.begin() + begin, x.begin() + end, y.begin() + begin); });
+}
+
+void set_zero(std::span<double> y) {
+  parallel_for(static_cast<Index>(y.size()), entries_per_task, [&](Index begin, Index end) { std::fill(y.begin() + begin, y.begin() + end, 0.0); });
 }
 
 bool all_finite(std::span<const double> a) {
-  for (const double value : a)
-    if (!std::isfinite(value)) return false;
-  return true;
+  return ordered_sum(static_cast<Index>(a.size()), [&](Index begin, Index end) { return nothing_of(&a[begin], end - begin); }) == 0.0;
 }
 
 }  // namespace taut

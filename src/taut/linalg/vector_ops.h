@@ -20,8 +20,11 @@ void multiply_each(std::span<const double> s, std::span<const double> r, std::sp
 void residual_from_product(std::span<const double> b, std::span<double> r);
 // max |a_i|, 0 for none; NaN counts as 0.
 double largest_magnitude(std::span<const double> a);
-// y += alpha p,  r -= alpha q: conjugate gradients' step, in one pass.
-void step_along(double alpha, std::span<const double> p, std::span<const double> q, std::span<double> y, std::span<double> r);
+// y += alpha p,  r -= alpha q: conjugate gradients' step, in one pass. Returns largest_magnitude(r).
+double step_along(double alpha, std::span<const double> p, std::span<const double> q, std::span<double> y, std::span<double> r);
+// y = x
+void copy(std::span<const double> x, std::span<double> y);
+void set_zero(std::span<double> y);
 // True when no entry is NaN or infinite.
 bool all_finite(std::span<const double> a);
 

@@ -75,7 +75,10 @@ bool CoreFast::analyze_if_new(const LinearSystem& system, SolveSummary& summary)
     pattern_ = nullptr;
     return false;
   }
-  if (pattern_->uniform_dim == 3) remainder_.analyze(pattern_, factor_.analyzed_blocks(), factor_.parallelograms());
+  if (pattern_->uniform_dim == 3) {
+    remainder_.analyze(pattern_, factor_.analyzed_blocks(), factor_.parallelograms());
+    ratios_.resize(static_cast<std::size_t>(remainder_.batches()));
+  }
   return true;
 }
 
@@ -87,8 +90,9 @@ bool CoreFast::factorize(CholeskyPrecision precision, const LinearSystem& system
   knows_products_ = lumped_ && precision == CholeskyPrecision::single_precision;
   BlocksOutside outside{lumped_, replaced_};
   if (knows_products_ || replaced_) outside.visit = [&](Index begin, Index end) { remainder_.update_rows(a, begin, end); };
+  if (replaced_) outside.beside = {remainder_.batches(), [&](Index batch) { ratios_[batch] = remainder_.ratios_in(batch, system.masses); }};
   if (starts_at_rest_) {
-    summary.status = factor_.factorize(a, basis, load_, &delta0_, outside);
+    summary.status = factor_.factorize(a, basis, r_, &delta0_, outside);
     delta_ = delta0_;
   } else {
     summary.status = factor_.factorize(a, basis, load_, delta0_, r_, delta_, outside);
@@ -122,10 +126,10 @@ void CoreFast::take_outside(const LinearSystem& system) {
   excess_ = 1.0;
 }
 
-// For what is replaced, once the remainder has been taken from the matrix.
-void CoreFast::bound_replaced(const LinearSystem& system) {
+// For what is replaced, once the factorisation has taken the remainder from the matrix.
+void CoreFast::bound_replaced() {
   if (!replaced_) return;
-  const BlockRemainder::Ratios ratio = remainder_.ratios(system.masses);
+  const BlockRemainder::Ratios ratio = BlockRemainder::largest(ratios_);
   excess_ = 1.0 + 4.0 * ratio.replaced;
   condition_ = excess_ * (1.0 + 2.0 * ratio.dropped);
 }
@@ -147,17 +151,14 @@ void CoreFast::residual(const LinearSystem& system, std::span<const double> x) {
   residual_from_product(system.rhs, r_);
 }
 
-// x and its residual. At rest, x = (I-S) z, that is the load.
+// x, its residual, and the load. At rest, x = (I-S) z, the residual is the load.
 void CoreFast::start(const LinearSystem& system, std::span<double> x) {
   starts_at_rest_ = system.guess.empty() || !system.guess_is_iterate;
   LinearSystem from_rest = system;
   if (starts_at_rest_) from_rest.guess = {};
   initial_guess(from_rest, x);
-  if (starts_at_rest_) {
-    std::ranges::copy(load_, r_.begin());
-  } else {
-    residual(system, x);
-  }
+  load_without_prescribed(system, starts_at_rest_ ? r_ : load_);
+  if (!starts_at_rest_) residual(system, x);
 }
 
 // Conjugate gradients for the residual in r_, whose forward solve came with the factorisation, from x on; `done` iterations came before.
@@ -176,7 +177,6 @@ KrylovResult CoreFast::iterate(const LinearSystem& system, std::span<double> x, 
   bool from_a = !knows_products_ || rounding.worst * seen > harmless;
   result.start_value = begin / scale;
   if (coefficients) *coefficients = {};
-  std::ranges::fill(p_, 0.0);
   const auto end_part = [&] {
     if (condition_ > 0.0) bound_iterations_ += iteration_bound(condition_, begin / scale, aim / scale);
   };
@@ -204,7 +204,7 @@ KrylovResult CoreFast::iterate(const LinearSystem& system, std::span<double> x, 
       break;
     }
     const double alpha = delta / curvature;
-    step_along(alpha, c_, q_, x, r_);
+    const double largest = step_along(alpha, c_, q_, x, r_);
     energy_ += alpha * delta;
     is_true = from_a;
     if (from_a && in_single && result.iterations % check_every == check_every - 1) {
@@ -217,7 +217,7 @@ KrylovResult CoreFast::iterate(const LinearSystem& system, std::span<double> x, 
       }
     }
     previous = delta;
-    delta = factor_.solve_forward(r_);
+    delta = factor_.solve_forward(r_, largest);
     ++result.iterations;
     if (coefficients) coefficients->alpha.push_back(alpha), coefficients->beta.push_back(delta / previous);
     if (observer) observer(done + result.iterations, std::sqrt(std::abs(delta)) / scale, x);
@@ -245,17 +245,15 @@ void CoreFast::run(const LinearSystem& system, std::span<double> x, SolveSummary
   if (!analyze_if_new(system, summary)) return initial_guess(system, x);
   summary.order_ms = timer.lap();
   for (auto* v : {&load_, &r_, &c_, &p_, &q_}) v->resize(x.size());
-  load_without_prescribed(system, load_);
-  summary.reduce_ms = timer.lap();
-
   start(system, x);
+  summary.reduce_ms = timer.lap();
   lumped_ = system.rho >= 0.0 && system.matrix->pattern->uniform_dim == 3;
   take_outside(system);
   summary.solve_ms = timer.lap();
   const bool tries_single = !(rounding_in_single(system).worst > too_large_for_single);
   const bool in_single = tries_single && factorize(CholeskyPrecision::single_precision, system, summary);
   if (!in_single && !begin_in_double(system, tries_single, summary)) return;
-  bound_replaced(system);
+  bound_replaced();
   summary.factor_ms = timer.lap();
 
   const int limit = iteration_limit(a.dofs());
@@ -276,8 +274,9 @@ void CoreFast::run(const LinearSystem& system, std::span<double> x, SolveSummary
     const KrylovResult first = result;
     summary.status = first.status;
     if (!all_finite(x)) initial_guess(system, x);
-    residual(system, x);
     starts_at_rest_ = false;
+    load_without_prescribed(system, load_);
+    residual(system, x);
     if (!begin_in_double(system, true, summary)) return;
     summary.factor_ms += timer.lap();
     result = iterate(system, x, done, limit - done, false);

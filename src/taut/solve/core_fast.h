@@ -56,7 +56,7 @@ class CoreFast : public ConstrainedSolver {
   void residual(const LinearSystem& system, std::span<const double> x);
   bool begin_in_double(const LinearSystem& system, bool single_has_failed, SolveSummary& summary);
   void take_outside(const LinearSystem& system);
-  void bound_replaced(const LinearSystem& system);
+  void bound_replaced();
   double factor_quality(const BlockCsr& a);
   KrylovResult iterate(const LinearSystem& system, std::span<double> x, int done, int max_iterations, bool in_single);
 
@@ -64,6 +64,7 @@ class CoreFast : public ConstrainedSolver {
   std::vector<std::uint8_t> mask_;  // of the core that was asked for
   BlockCholesky factor_;
   BlockRemainder remainder_;
+  std::vector<BlockRemainder::Ratios> ratios_;  // per batch of it
   bool starts_at_rest_ = false;               // the first residual is the load
   bool lumped_ = false;                       // P is without the springs outside the core
   bool replaced_ = false;                     // ... and with parallelograms for some of them
@@ -73,7 +74,7 @@ class CoreFast : public ConstrainedSolver {
   double delta0_ = 0.0, delta_ = 0.0;         // b̂ᵀ P̃⁻¹ b̂, and of the residual at the factorisation
   double energy_ = 0.0;                       // |x - x0|_A² that the loop has found
   int bound_iterations_ = 0;                  // of the parts of the loop so far
-  std::vector<double> load_, r_, c_, p_, q_;  // b̂, residual, direction, its products with P and A
+  std::vector<double> load_, r_, c_, p_, q_;  // b̂ (where it is not the first residual), residual, direction, its products with P and A
 };
 
 }  // namespace taut

@@ -1,6 +1,6 @@
 #include "taut/solve/full_space.h"
 
-#include <algorithm>
+#include "taut/linalg/vector_ops.h"
 
 namespace taut {
 
@@ -17,16 +17,15 @@ NodeBasis free_basis(const LinearSystem& system) {
 }
 
 void load_without_prescribed(const LinearSystem& system, std::span<double> load) {
-  std::copy(system.rhs.begin(), system.rhs.end(), load.begin());
+  copy(system.rhs, load);
   if (!system.constraints) return;
   const BlockCsr& a = *system.matrix;
   const BlockPattern& p = *a.pattern;
   std::vector<std::pair<Index, Vec3>> moving;
-  for (Index i = 0; i < p.rows(); ++i) {
-    if (system.constraints->ndof(i) == 3) continue;
+  for_each_projected(system.constraints->ndofs(), [&](Index i) {
     const Vec3 z = system.constraints->constrained_part(i, Eigen::Map<const Vec3>(&system.z[3 * static_cast<std::size_t>(i)]));
     if (!z.isZero(0.0)) moving.emplace_back(i, z);
-  }
+  });
   for (std::size_t m = 0; m < moving.size(); ++m) {
     if (m + nodes_ahead < moving.size()) {
       const Index later = moving[m + nodes_ahead].first;

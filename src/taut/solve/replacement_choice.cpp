@@ -10,6 +10,7 @@ namespace {
 
 constexpr Index most_samples = 512;
 constexpr Index samples_ahead = 16;  // for which A is asked: they lie far apart
+constexpr Index chunk = 64, chunks_per_task = 4;
 
 struct Energies {
   double across = 0.0, bent = 0.0;
@@ -44,7 +45,7 @@ bool replacing_pays(const BlockCsr& a, std::span<const Parallelogram> parallelog
       part += {energy(block, width, across), energy(block, width, bent)};
     }
     return part;
-  });
+  }, chunk, chunks_per_task);
   return sum.bent < sum.across;
 }
 

@@ -180,18 +180,13 @@ SolveSummary ConstrainedSolver::solve(const LinearSystem& system, std::span<doub
 }
 
 void initial_guess(const LinearSystem& system, std::span<double> x) {
-  if (system.guess.empty()) {
-    std::fill(x.begin(), x.end(), 0.0);
-  } else {
-    std::copy(system.guess.begin(), system.guess.end(), x.begin());
-  }
+  system.guess.empty() ? set_zero(x) : copy(system.guess, x);
   if (!system.constraints) return;
-  for (Index i = 0; i < system.constraints->nodes(); ++i) {
-    if (system.constraints->ndof(i) == 3) continue;
+  for_each_projected(system.constraints->ndofs(), [&](Index i) {
     Eigen::Map<Vec3> node(&x[3 * static_cast<std::size_t>(i)]);
     const Vec3 z = Eigen::Map<const Vec3>(&system.z[3 * static_cast<std::size_t>(i)]);
     node = system.constraints->free_part(i, node) + system.constraints->constrained_part(i, z);
-  }
+  });
 }
 
 }  // namespace taut

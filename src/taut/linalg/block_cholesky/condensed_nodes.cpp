@@ -223,9 +223,11 @@ void NumericFactor<T>::mark_projected(Index k) {
     return;
   }
   const Index diagonal = layout_.block_start[k];
-  const auto end_of_condensed = layout_.block_start.begin() + layout_.condensed + 1;
-  for (Index p = layout_.pair_start[diagonal]; p < layout_.pair_start[diagonal + 1]; ++p)
-    is_plain_with_neighbours_[std::upper_bound(layout_.block_start.begin(), end_of_condensed, layout_.pair[p].first) - layout_.block_start.begin() - 1] = 0;
+  for (Index p = layout_.pair_start[diagonal]; p < layout_.pair_start[diagonal + 1]; ++p) {
+    Index e = layout_.pair[p].first;
+    while (layout_.block[e].place >= layout_.condensed) --e;  // to the condensed node's own block, its first
+    is_plain_with_neighbours_[layout_.block[e].place] = 0;
+  }
 }
 
 template <class T>

@@ -25,9 +25,9 @@ NumericFactor<T>::NumericFactor(const SupernodeTree& tree, const CondensedGraph&
   for (auto& parts : norm2_) parts.resize(layout_.front.size());
   is_plain_with_neighbours_.resize(static_cast<std::size_t>(layout_.condensed));
   condensed_vectors_[0] = AlignedArray<T>(Offset{4} * layout_.condensed);
-  dim_.resize(layout_.node.size());
-  is_plain_.resize(layout_.node.size());
-  basis_of_.resize(layout_.node.size());
+  dim_.resize(layout_.node.size(), 3);
+  is_plain_.resize(layout_.node.size(), 1);
+  basis_of_.resize(layout_.node.size(), -1);
   plan();
 }
 
@@ -44,25 +44,29 @@ void NumericFactor<T>::plan() {
 
 template <class T>
 void NumericFactor<T>::take_dims(const FactorSource& source) {
-  const NodeBasis& basis = source.basis;
-  const Index nodes = static_cast<Index>(dim_.size());
-  parallel_for(nodes, 2048, [&](Index begin, Index end) {
-    for (Index k = begin; k < end; ++k) {
-      const Index node = layout_.node[k];
-      dim_[k] = basis.dim.empty() ? source.a.pattern->dim(node) : basis.dim[node];
-      is_plain_[k] = dim_[k] == 3;
-      basis_of_[k] = -1;
-    }
-  });
+  const BlockPattern& pattern = *source.a.pattern;
+  const auto take = [&](Index k, Index dim) {
+    dim_[k] = dim;
+    is_plain_[k] = dim == 3;
+    basis_of_[k] = -1;
+  };
+  for (const Index k : not_plain_) take(k, 3);
+  not_plain_.clear();
   basis_.clear();
-  std::ranges::fill(is_plain_with_neighbours_, std::uint8_t{1});
-  for (Index k = 0; k < nodes; ++k) {
-    if (is_plain_[k]) continue;
-    if (layout_.condensed > 0) mark_projected(k);
-    if (basis.dim.empty()) continue;
+  if (pattern.uniform_dim != 3)
+    for (std::size_t k = 0; k < dim_.size(); ++k)
+      if (const Index dim = pattern.dim(layout_.node[k]); dim != 3) take(k, dim), not_plain_.push_back(k);
+  for_each_projected(source.basis.dim, [&](Index node) {
+    const Index k = layout_.place[node];
+    if (k < 0) return;
+    take(k, source.basis.dim[node]);
+    not_plain_.push_back(k);
     basis_of_[k] = static_cast<Index>(basis_.size());
-    basis_.push_back(basis.frame[layout_.node[k]]);
-  }
+    basis_.push_back(source.basis.frame[node]);
+  });
+  if (layout_.condensed == 0) return;
+  std::ranges::fill(is_plain_with_neighbours_, std::uint8_t{1});
+  for (const Index k : not_plain_) mark_projected(k);
 }
 
 template <class T>
@@ -89,7 +93,7 @@ Status NumericFactor<T>::factorize(const FactorSource& source, std::span<const I
         forward(s, {start, loads[k].scale}, loads[k].b, static_cast<int>(loads.size() - 1 - k));
     }
   };
-  run_upwards(layout_.task_tree, std::ref(run));
+  run_upwards(layout_.task_tree, std::ref(run), source.beside ? *source.beside : SideTasks{});
   return verdict(source.a);
 }
 

@@ -40,6 +40,7 @@ struct FactorSource {
   const UnanalyzedBlocks* lumped = nullptr;      // each is added to its row's diagonal block
   std::span<const Parallelogram> replaced = {};  // of the analysed pattern, and always the same ones; besides lumped
   const RowsVisitor* visit = nullptr;
+  const SideTasks* beside = nullptr;
 };
 
 // Right-hand sides and solutions: the node at place k of the order has its unknowns from start[k] on. With a basis these are all three; Q
@@ -134,6 +135,7 @@ class NumericFactor {
   std::vector<Index> dim_;                    // per place in the order: unknowns of the node in the factorised matrix
   std::vector<std::uint8_t> is_plain_;        // per place: three unknowns, without a basis of their own
   std::vector<std::uint8_t> is_plain_with_neighbours_;  // per condensed node
+  std::vector<Index> not_plain_;              // places, of the last matrix
   std::vector<Index> basis_of_;               // per place: its Q_i in basis_, or -1: the identity
   std::vector<Mat3> basis_;
 };
