@@ -129,6 +129,58 @@ TEST(BlockRemainder, KnowsWhatParallelogramsLeave) {
   }
 }
 
+// Of more rows than one batch, against the sums written down.
+TEST(BlockRemainder, JoinsBatches) {
+  Random random(35);
+  const SpringGrid grid(random, 37, 29);
+  const BlockPattern& pattern = *grid.a.pattern;
+  std::vector<std::uint8_t> kept = grid.sides;
+  for (Index i = 0; i + grid.nu + 1 < pattern.rows(); ++i)
+    if (const Index k = pattern.find(i, i + grid.nu + 1); k >= 0) kept[k] = kept[pattern.find(i + grid.nu + 1, i)] = 1;
+  const std::vector<Parallelogram> list = parallelograms(pattern, grid.sides, kept);
+  ASSERT_GT(list.size(), 500u);
+  BlockRemainder remainder;
+  remainder.analyze(grid.a.pattern, kept, list);
+  ASSERT_GT(remainder.batches(), 3);
+  remainder.update(grid.a);
+  const std::vector<double> c = random.vector(grid.a.dofs()), r = random.vector(grid.a.dofs()), masses(static_cast<std::size_t>(pattern.rows()), 0.5);
+  const auto at = [&](Index i) { return Eigen::Map<const Vec3>(&c[3 * static_cast<std::size_t>(i)]); };
+  const auto block = [&](Index i, Index k) -> Mat3 {
+    return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>, 0, Eigen::OuterStride<>>(grid.a.block(i, k), Eigen::OuterStride<>(pattern.width(i)));
+  };
+  for (const bool replaced : {false, true}) {
+    remainder.set_replaced(replaced);
+    std::vector<std::uint8_t> is_replaced(kept.size(), 0);
+    Eigen::VectorXd e = Eigen::VectorXd::Zero(grid.a.dofs());
+    std::vector<Mat3> dropped(masses.size(), Mat3::Zero()), at_corner(masses.size(), Mat3::Zero());
+    if (replaced)
+      for (const Parallelogram& of : list) {
+        is_replaced[of.block] = is_replaced[of.opposite] = 1;
+        const Mat3 b = block(of.a, of.block);
+        const Vec3 force = b * (at(of.a) - at(of.b) + at(of.c) - at(of.d));
+        for (const Index i : {of.a, of.c}) e.segment<3>(3 * i) += force;
+        for (const Index i : {of.b, of.d}) e.segment<3>(3 * i) -= force;
+        for (const Index i : {of.a, of.b, of.c, of.d}) at_corner[i] += b;
+      }
+    for (Index i = 0; i < pattern.rows(); ++i)
+      for (Index k = pattern.row_start[i]; k < pattern.row_start[i + 1]; ++k) {
+        if (kept[k] || is_replaced[k] || pattern.column[k] == i) continue;
+        e.segment<3>(3 * i) += block(i, k) * (at(pattern.column[k]) - at(i));
+        dropped[i] += block(i, k);
+      }
+    std::vector<double> p(c.size(), std::nan("")), q(c.size());
+    remainder.advance(0.0, r, c, p, q);
+    EXPECT_EQ(p, r);
+    EXPECT_LT((as_eigen(q) - as_eigen(r) - e).norm(), 1e-6 * e.norm()) << replaced;
+    const BlockRemainder::Ratios ratios = remainder.ratios(masses);
+    const auto largest = [](const std::vector<Mat3>& of) {
+      return std::ranges::max(of, {}, [](const Mat3& m) { return m.norm(); }).norm() / 0.5;
+    };
+    EXPECT_NEAR(ratios.dropped, largest(dropped), 1e-5 * ratios.dropped);
+    EXPECT_NEAR(ratios.replaced, largest(at_corner), 1e-5 * ratios.replaced);
+  }
+}
+
 // What lumping is for: a translation is not in E's way at all, whatever its rounding.
 TEST(BlockRemainder, LeavesTranslationsAlone) {
   Random random(33);
