@@ -15,7 +15,6 @@ namespace taut {
 
 namespace {
 
-constexpr Index nodes_per_task = 256;
 constexpr Index none_is_bad = std::numeric_limits<Index>::max();
 
 bool is_good(double pivot) { return pivot > 0.0 && std::isfinite(pivot); }
@@ -109,36 +108,6 @@ TAUT_MULTIVERSION Index condense_some(const FactorLayout& layout, const std::uin
 }
 TAUT_MULTIVERSION Index condense_some(const FactorLayout& layout, const std::uint8_t* is_plain, Index begin, Index end, double* gathered) {
   return condense_plain_rows(layout, is_plain, begin, end, gathered);
-}
-
-// A_jk -= Σ Uᵀ_ij U_ik, of the blocks of the nodes at places begin ... end-1.
-template <class T>
-TAUT_ALWAYS_INLINE void subtract_products(const FactorLayout& layout, Index begin, Index end, T* gathered) {
-  using Four = typename Quad<T>::Type;
-  const Index* pair_start = layout.pair_start.data();
-  const CondensedPair* pair = layout.pair.data() + pair_start[layout.block_start[begin]];
-  for (Index e = layout.block_start[begin]; e < layout.block_start[end]; ++e) {
-    T* to = gathered + Offset{9} * e;
-    Four row[3] = {quad(to), quad(to + 3)};
-    get_last_row(to, row[2]);
-    for (const CondensedPair* stop = layout.pair.data() + pair_start[e + 1]; pair < stop; ++pair) {
-      const T *left = gathered + Offset{9} * pair->first, *right = gathered + Offset{9} * pair->second;
-      Four u[3] = {quad(right), quad(right + 3)};
-      get_last_row(right, u[2]);
-      for (Index r = 0; r < 3; ++r)
-        for (Index a = 0; a < 3; ++a) row[a] -= left[3 * r + a] * u[r];
-    }
-    quad(to) = row[0];
-    quad(to + 3) = row[1];
-    put_three(row[2], to + 6);
-  }
-}
-
-TAUT_MULTIVERSION void subtract_some(const FactorLayout& layout, Index begin, Index end, float* gathered) {
-  subtract_products(layout, begin, end, gathered);
-}
-TAUT_MULTIVERSION void subtract_some(const FactorLayout& layout, Index begin, Index end, double* gathered) {
-  subtract_products(layout, begin, end, gathered);
 }
 
 // What the solves of condensed nodes without a basis read, and whose neighbours have none either.
@@ -271,17 +240,6 @@ BadPivot NumericFactor<T>::condense_projected(Index k) {
   return {};
 }
 
-template <class T>
-bool NumericFactor<T>::subtract_condensed() {
-  if (layout_.condensed == 0) return true;
-  if (first_bad_condensed_.load(std::memory_order_relaxed) != none_is_bad) return false;
-  parallel_for(static_cast<Index>(layout_.node.size()) - layout_.condensed, nodes_per_task, [&](Index begin, Index end) {
-    const FlushSubnormals flush;
-    subtract_some(layout_, layout_.condensed + begin, layout_.condensed + end, gathered_.data());
-  });
-  return true;
-}
-
 // Returns the sum of yᵀ_i y_i.
 template <class T>
 double NumericFactor<T>::forward_condensed(const Front& front, const FactorVectors& vectors, const double* b, int slot) {
@@ -368,7 +326,6 @@ void NumericFactor<T>::turn_back(Index k, const T* solution, T (&to)[3]) const {
   template void NumericFactor<T>::mark_projected(Index);                                                           \
   template void NumericFactor<T>::condense_rows(Index, Index);                                                     \
   template BadPivot NumericFactor<T>::condense_projected(Index);                                                   \
-  template bool NumericFactor<T>::subtract_condensed();                                                            \
   template double NumericFactor<T>::forward_condensed(const Front&, const FactorVectors&, const double*, int);     \
   template void NumericFactor<T>::backward_condensed(const Front&, const FactorVectors&, double, double*) const;
 TAUT_INSTANTIATE(float)

@@ -13,6 +13,13 @@
 
 namespace taut {
 
+namespace {
+
+// Of a child's update, that it pays to add them to a front with several threads.
+constexpr Index rows_worth_sharing = 128;
+
+}  // namespace
+
 template <class T>
 NumericFactor<T>::NumericFactor(const SupernodeTree& tree, const CondensedGraph& graph, std::span<const Index> condensed_at, const FrontKernels<T>& kernels)
     : kernels_(kernels),
@@ -81,7 +88,7 @@ Status NumericFactor<T>::factorize(const FactorSource& source, std::span<const I
   take_dims(source);
   first_bad_condensed_.store(std::numeric_limits<Index>::max(), std::memory_order_relaxed);
   gather(source);
-  if (!subtract_condensed()) return verdict(source.a);
+  if (first_bad_condensed_.load(std::memory_order_relaxed) < layout_.condensed) return verdict(source.a);
   const auto run = [&](Index t) {
     const FlushSubnormals flush;
     const FrontTask& task = layout_.task[t];
@@ -106,9 +113,8 @@ void NumericFactor<T>::eliminate(Index s, bool shared, T* scratch) {
       return;
     }
   T* panel = (front.panel_in_scratch ? scratch : arena_.data()) + front.panel;
-  std::fill(panel, panel + front.shape.panel_size(), T(0));
-  assemble(front, panel);
-  add_children(front, scratch, panel, true);
+  assemble(front, panel, shared);
+  add_children(front, scratch, panel, true, shared);
   bad_pivot_[s] = factor_panel(front, panel, shared);
   fate_[s] = bad_pivot_[s].column < 0 ? Fate::eliminated : Fate::bad_pivot;
   if (fate_[s] != Fate::eliminated) return;
@@ -129,7 +135,7 @@ void NumericFactor<T>::form_update(const Front& front, T* scratch, const T* pane
   } else {
     kernels_.form_update(front.shape, panel, update, 0, tiles);
   }
-  add_children(front, scratch, update, false);
+  add_children(front, scratch, update, false, shared);
 }
 
 template <class T>
@@ -145,88 +151,25 @@ void NumericFactor<T>::pack(const Front& front, const T* panel, bool shared) {
 }
 
 template <class T>
-void NumericFactor<T>::assemble(const Front& front, T* panel) const {
-  const Index r = front.shape.slab_rows;
-  const auto set_one = [&](Index j) { panel[front.shape.panel_offset(j / r) + Offset{j} * r + j % r] = T(1); };
-  for (Index k = front.first_node; k < front.last_node; ++k) {
-    assemble_node(front, k, panel);
-    for (Index j = dim_[k]; j < layout_.node_weight[k]; ++j) set_one(layout_.node_column[k] + j);
-  }
-  for (Index j = 0; j < front.shape.padding; ++j) set_one(j);
-}
-
-namespace {
-
-// B := (first `rows` columns of left)ᵀ B (first `columns` columns of right); null: the identity. B: 3x3 row-major.
-void project(const Mat3* left, Index rows, const Mat3* right, Index columns, double* block) {
-  using Block = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-  Eigen::Map<Block> b(block);
-  if (left) b.topRows(rows) = (left->leftCols(rows).transpose() * b).eval();
-  if (right) b.leftCols(columns) = (b * right->leftCols(columns)).eval();
-}
-
-// A gathered block, `width` numbers a column; of one on the diagonal the lower triangle.
-template <class T, class From>
-TAUT_ALWAYS_INLINE void put_block(const BlockPlace& place, const From* block, Index width, Index rows, Index columns, bool is_diagonal,
-                                  T* column, Index r) {
-  for (Index i = 0; i < rows; ++i) {
-    T* to = column + (i < place.rows_in_slab ? place.offset + i : place.next_slab + i - place.rows_in_slab);
-    for (Index j = 0; j < (is_diagonal ? i + 1 : columns); ++j) to[j * r] = static_cast<T>(block[j * width + i]);
-  }
-}
-
-// Three numbers. Reads a fourth and adds nothing to the fourth place.
-template <class T>
-TAUT_ALWAYS_INLINE void add_three(const T* from, T* to) {
-  typedef T Four __attribute__((vector_size(4 * sizeof(T)), aligned(sizeof(T)), may_alias));
-  typedef std::conditional_t<sizeof(T) == 4, std::int32_t, std::int64_t> Mask __attribute__((vector_size(4 * sizeof(T))));
-  const Mask first_three = {-1, -1, -1, 0};
-  *reinterpret_cast<Four*>(to) += (Four)((Mask) * reinterpret_cast<const Four*>(from) & first_three);
-}
-
-}  // namespace
-
-template <class T>
-void NumericFactor<T>::assemble_node(const Front& front, Index k, T* panel) const {
-  const Index r = front.shape.slab_rows, weight = layout_.node_weight[k];
-  if (dim_[k] == 0) return;
-  const T* block = gathered_.data() + layout_.gathered_start[k];
-  T* column = panel + Offset{layout_.node_column[k]} * r;
-  for (Index e = layout_.block_start[k]; e < layout_.block_start[k + 1]; ++e) {
-    const BlockPlace& place = layout_.block[e];
-    if (!is_plain_[k] || !is_plain_[place.place]) {
-      assemble_projected(place, k, block, column, r);
-    } else if (place.place != k && place.rows_in_slab > 3) {
-      // Four are read and written in each column of the block: there are as many.
-      for (Index j = 0; j < 3; ++j) add_three(block + 3 * j, column + place.offset + j * r);
-    } else {
-      put_block(place, block, 3, 3, 3, place.place == k, column, r);
-    }
-    block += weight * layout_.node_weight[place.place];
-  }
-}
-
-// Blocks of any size, projected where a node has a basis of its own.
-template <class T>
-void NumericFactor<T>::assemble_projected(const BlockPlace& place, Index k, const T* block, T* column, Index r) const {
-  const Index dim = dim_[k], other_dim = dim_[place.place], basis = basis_of_[k], other_basis = basis_of_[place.place];
-  if (basis < 0 && other_basis < 0) return put_block(place, block, layout_.node_weight[place.place], other_dim, dim, place.place == k, column, r);
-  double projected[9];
-  for (Index j = 0; j < 9; ++j) projected[j] = static_cast<double>(block[j]);
-  project(basis >= 0 ? &basis_[basis] : nullptr, dim, other_basis >= 0 ? &basis_[other_basis] : nullptr, other_dim, projected);
-  put_block(place, projected, 3, other_dim, dim, place.place == k, column, r);
-}
-
-template <class T>
-void NumericFactor<T>::add_children(const Front& front, T* scratch, T* target, bool target_is_panel) {
+void NumericFactor<T>::add_children(const Front& front, T* scratch, T* target, bool target_is_panel, bool shared) {
   for (Index i = front.child_begin; i < front.child_end; ++i) {
     const Front& child = layout_.front[layout_.child[i]];
     const T* update = update_of(child, scratch);
     const Index first_run = target_is_panel ? child.run_begin : child.run_split;
     const Index end_of_runs = target_is_panel ? child.run_split : child.run_end;
     const Index first_spread = target_is_panel ? child.spread_begin : child.spread_split;
-    kernels_.add_update(child.shape, update, layout_.run.data() + first_run, end_of_runs - first_run, layout_.spread.data() + first_spread,
-                        child.spread_end - first_spread, front.shape, target, target_is_panel);
+    // Each spread has rows of its own.
+    const auto add = [&](Index begin, Index end) {
+      const FlushSubnormals flush;
+      kernels_.add_update(child.shape, update, layout_.run.data() + first_run, end_of_runs - first_run, layout_.spread.data() + first_spread + begin,
+                          end - begin, front.shape, target, target_is_panel);
+    };
+    const Index spreads = child.spread_end - first_spread;
+    if (shared && child.shape.rows - child.shape.columns > rows_worth_sharing) {
+      parallel_for(spreads, 4, add);
+    } else {
+      add(0, spreads);
+    }
   }
 }
 

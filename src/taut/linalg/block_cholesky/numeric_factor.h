@@ -3,12 +3,12 @@
 // and the solves.
 //
 // First A's blocks are gathered in the order of elimination and in the factor's precision (gather.cpp): A is read once, from end to end,
-// where fronts would take rows from all over it. On the way nodes that are condensed are eliminated (condensation.h), and what they leave is
-// taken off the others' blocks after that (condensed_nodes.cpp).
+// where fronts would take rows from all over it. On the way nodes that are condensed are eliminated (condensed_nodes.cpp, condensation.h).
 //
 // Then for each front, children first (front_kernels.h has the arithmetic, factor_layout.h the memory):
 //
-//   1  panel = 0; add the blocks of A in the pivots' columns; unknowns that are missing in A (and padding) get the identity
+//   1  panel = 0; the blocks of A in the pivots' columns, less what condensed nodes leave (assemble.cpp); unknowns that are missing in A (and
+//      padding) get the identity
 //   2  add the columns of the children's updates that are pivots here
 //   3  eliminate the pivots
 //   4  update = -L21 L21ᵀ, written, not accumulated: so it is never zeroed ...
@@ -94,11 +94,10 @@ class NumericFactor {
   void gather(const FactorSource& source);
   void gather_row(const FactorSource& source, Index k);
   void add_replaced(const FactorSource& source, Index row);
-  // Condensed nodes: those of some of A's rows; one that is not plain; and, when all are, what they leave. False: there is a bad pivot.
+  // Condensed nodes: those of some of A's rows; one that is not plain.
   void mark_projected(Index k);
   void condense_rows(Index begin, Index end);
   BadPivot condense_projected(Index k);
-  bool subtract_condensed();
   double forward_condensed(const Front& front, const FactorVectors& vectors, const double* b, int slot);
   void backward_condensed(const Front& front, const FactorVectors& vectors, double beta, double* x) const;
   void forward_projected(Index k, double scale, const double* b, T* own, T* y) const;
@@ -106,11 +105,10 @@ class NumericFactor {
   void turn_back(Index k, const T* solution, T (&to)[3]) const;
   // scratch: the thread's
   void eliminate(Index s, bool shared, T* scratch);
-  void assemble(const Front& front, T* panel) const;
-  void assemble_node(const Front& front, Index k, T* panel) const;
-  void assemble_projected(const BlockPlace& place, Index k, const T* block, T* column, Index slab_rows) const;
+  void assemble(const Front& front, T* panel, bool shared) const;
+  void assemble_projected(const Front& front, Index k, T* panel) const;
   T* update_of(const Front& front, T* scratch) { return (front.update_in_scratch ? scratch : arena_.data()) + front.update; }
-  void add_children(const Front& front, T* scratch, T* target, bool target_is_panel);
+  void add_children(const Front& front, T* scratch, T* target, bool target_is_panel, bool shared);
   BadPivot factor_panel(const Front& front, T* panel, bool shared) const;
   void form_update(const Front& front, T* scratch, const T* panel, bool shared);
   void pack(const Front& front, const T* panel, bool shared);
