@@ -15,7 +15,8 @@ class TaskTrees : public testing::Test {
  protected:
   ~TaskTrees() override { set_thread_count(before_); }
   const int before_ = thread_count();
-  const std::vector<std::vector<Index>> parents_ = {{}, {-1}, {-1, -1, -1}, {1, 2, 3, -1}, {2, 2, 6, 5, 5, 6, -1}, {4, 4, 4, 4, -1, 6, -1}};
+  const std::vector<std::vector<Index>> parents_ = {{}, {-1}, {-1, -1, -1}, {1, 2, 3, -1}, {2, 2, 6, 5, 5, 6, -1}, {4, 4, 4, 4, -1, 6, -1},
+                                                   {4, 4, 4, 4, 16, 7, 7, 16, 14, 14, 13, 13, 13, 14, 16, 16, -1}};
 };
 
 // When each task ran, in any order that two threads can be told apart by.

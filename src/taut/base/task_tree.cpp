@@ -1,5 +1,6 @@
 #include "taut/base/task_tree.h"
 
+#include <algorithm>
 #include <cassert>
 
 #include "taut/base/parallel.h"
@@ -24,6 +25,31 @@ TaskTree::TaskTree(std::vector<Index> parent) : parent_(std::move(parent)), chil
     if (children(t).empty()) leaves_.push_back(t);
   }
   open_children_ = std::make_unique<std::atomic<Index>[]>(parent_.size());
+  plan_way_down();
+}
+
+// On the way up the thread that started the run takes leaves from the last one on, the others from the first one on, and they meet in the
+// middle. So on the way down they begin there: children near the middle come first. Of what is left to be taken, others take the oldest, the thread
+// itself the youngest.
+void TaskTree::plan_way_down() {
+  std::vector<Index> first_leaf(parent_.size()), end_leaf(parent_.size());
+  for (Index t = 0, leaf = 0; t < size(); ++t) {
+    const auto below = children(t);
+    first_leaf[t] = below.empty() ? leaf++ : first_leaf[below.front()];
+    end_leaf[t] = leaf;
+  }
+  const Index middle = static_cast<Index>(leaves_.size()) / 2;
+  const auto distance = [&](Index t) { return std::max({Index{0}, first_leaf[t] - middle, middle - end_leaf[t]}); };
+  child_down_ = child_;
+  for (Index t = 0; t < size(); ++t) {
+    const auto begin = child_down_.begin() + child_start_[t], end = child_down_.begin() + child_start_[t + 1];
+    if (begin == end) continue;
+    std::iter_swap(begin, std::min_element(begin, end, [&](Index a, Index b) { return distance(a) < distance(b); }));
+    std::sort(begin + 1, end, [&](Index a, Index b) {
+      const bool a_is_behind = first_leaf[a] >= middle, b_is_behind = first_leaf[b] >= middle;
+      return a_is_behind != b_is_behind ? b_is_behind : distance(a) > distance(b);
+    });
+  }
 }
 
 void run_upwards(TaskTree& tree, const std::function<void(Index)>& body, const SideTasks& beside) {
@@ -60,10 +86,10 @@ void run_downwards(const TaskTree& tree, const std::function<void(Index)>& body)
   detail::run_tasks(tree.roots(), [&](Index t, detail::Spawner& spawn) {
     for (;;) {
       body(t);
-      const auto children = tree.children(t);
-      if (children.empty()) return;
-      for (const Index child : children.subspan(1)) spawn(child);
-      t = children.front();
+      const Index begin = tree.child_start_[t], end = tree.child_start_[t + 1];
+      if (begin == end) return;
+      for (Index k = begin + 1; k < end; ++k) spawn(tree.child_down_[k]);
+      t = tree.child_down_[begin];
     }
   });
 }

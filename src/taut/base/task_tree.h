@@ -4,6 +4,8 @@
 //   run_upwards(tree, f)     f(t) once for every task, after all its children
 //   run_downwards(tree, f)   f(t) once for every task, after its parent
 //
+// The way down goes back the way up: a thread finds most of what it reads in its own cache, since it begins where it ended.
+//
 // Near the root there are fewer tasks than threads. Side tasks, which need nothing of the tree's and nothing needs, fill that time: they begin
 // when a thread finds no other.
 //
@@ -34,7 +36,11 @@ class TaskTree {
 
  private:
   friend void run_upwards(TaskTree&, const std::function<void(Index)>&, const struct SideTasks&);
+  friend void run_downwards(const TaskTree&, const std::function<void(Index)>&);
+  void plan_way_down();
+
   std::vector<Index> parent_, child_start_, child_, leaves_, roots_;
+  std::vector<Index> child_down_;  // child_ once more: first the one to go on with, then the others in the order in which they are left to be taken
   std::unique_ptr<std::atomic<Index>[]> open_children_;
 };
 
