@@ -46,7 +46,9 @@ TEST_F(TaskTrees, EachTaskRunsOnceAndInItsPlace) {
         const std::vector<int> when = visits(tree, upwards);
         for (Index t = 0; t < tree.size(); ++t) {
           EXPECT_GE(when[t], 0);
-          if (parent[t] >= 0) EXPECT_EQ(when[t] < when[parent[t]], upwards) << t;
+          if (parent[t] >= 0) {
+            EXPECT_EQ(when[t] < when[parent[t]], upwards) << t;
+          }
         }
       }
     }

@@ -18,7 +18,7 @@ namespace {
 
 constexpr Index rows_per_task = 512;  // when blocks are copied
 // Of a batch: their sums stay in the cache, and what acts on rows of two batches is little. Small matrices are cut for some threads.
-constexpr Index least_rows = 256, most_rows = 1024, batches_wanted = 16;
+constexpr Index least_rows = 256, most_rows = 2048, batches_wanted = 16;
 constexpr Index overread = 7;  // entries behind a block that a load of sixteen takes in
 
 using Four = double __attribute__((vector_size(32)));
