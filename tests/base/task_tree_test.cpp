@@ -11,9 +11,9 @@
 namespace taut::test {
 namespace {
 
-class TaskTrees : public testing::Test {
+class TasksInParallel : public testing::Test {
  protected:
-  ~TaskTrees() override { set_thread_count(before_); }
+  ~TasksInParallel() override { set_thread_count(before_); }
   const int before_ = thread_count();
   const std::vector<std::vector<Index>> parents_ = {{}, {-1}, {-1, -1, -1}, {1, 2, 3, -1}, {2, 2, 6, 5, 5, 6, -1}, {4, 4, 4, 4, -1, 6, -1},
                                                    {4, 4, 4, 4, 16, 7, 7, 16, 14, 14, 13, 13, 13, 14, 16, 16, -1}};
@@ -37,7 +37,7 @@ std::vector<int> visits(TaskTree& tree, bool upwards, const SideTasks& beside = 
   return when;
 }
 
-TEST_F(TaskTrees, EachTaskRunsOnceAndInItsPlace) {
+TEST_F(TasksInParallel, EachTaskRunsOnceAndInItsPlace) {
   for (const int threads : {1, 2, 4}) {
     set_thread_count(threads);
     for (const auto& parent : parents_) {
@@ -56,7 +56,7 @@ TEST_F(TaskTrees, EachTaskRunsOnceAndInItsPlace) {
 }
 
 // Whatever the tree, and also when it is empty: all are done when the run is over.
-TEST_F(TaskTrees, SideTasksRunOnce) {
+TEST_F(TasksInParallel, SideTasksRunOnce) {
   for (const int threads : {1, 2, 4}) {
     set_thread_count(threads);
     for (const auto& parent : parents_)
