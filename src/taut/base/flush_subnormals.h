@@ -7,11 +7,7 @@
 // It is a property of the thread, and oneTBB sets it anew for each loop and task: so each body of a parallel loop that computes
 // with such numbers has its own, and the bits do not depend on which thread runs it.
 
-#if defined(__x86_64__)
-#include <xmmintrin.h>
-#else
 #include <cstdint>
-#endif
 
 namespace taut {
 
@@ -31,8 +27,8 @@ class FlushSubnormals {
 #if defined(__x86_64__)
   using Word = unsigned;
   static constexpr Word flush = 0x8040;  // MXCSR: results (FZ) and operands (DAZ)
-  static Word read() { return _mm_getcsr(); }
-  static void write(Word word) { _mm_setcsr(word); }
+  static Word read() { return __builtin_ia32_stmxcsr(); }
+  static void write(Word word) { __builtin_ia32_ldmxcsr(word); }
 #elif defined(__aarch64__)
   using Word = std::uint64_t;
   static constexpr Word flush = Word{1} << 24;  // FPCR.FZ: both
