@@ -5,8 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <optional>
 
 #include "linalg/random_matrix.h"
+#include "linalg/spring_grid.h"
+#include "taut/base/flush_subnormals.h"
+#include "taut/base/parallel.h"
 
 namespace taut::test {
 namespace {
@@ -112,6 +116,34 @@ BlockCsr beyond_float(Random& random) {
   BlockCsr a = random_spd(random, make_pattern(random_graph(random, 30, 2, 10), 3), 1e-2);
   for (double& value : a.values) value *= 1e200;
   return a;
+}
+
+// A matrix so small that what is subtracted from it is subnormal in single precision: taken for zero on every thread, whatever the caller's
+// thread does with such numbers, and the caller's way is as it was.
+TEST(BlockFactorSubnormals, AreZeroOnEveryThread) {
+  Random random(8);
+  SpringGrid grid(random, 40, 40, 0.3);
+  for (double& value : grid.a.values) value *= 1e-36;
+  const std::vector<double> b = random.vector(grid.a.dofs());
+  const int usual = thread_count();
+  std::vector<double> expected;
+  for (const int threads : {1, 2, 4})
+    for (const bool flushed_before : {false, true}) {
+      set_thread_count(threads);
+      std::optional<FlushSubnormals> flush;
+      if (flushed_before) flush.emplace();
+      BlockCholesky factor(CholeskyPrecision::single_precision);
+      std::vector<double> x(b.size());
+      ASSERT_TRUE(factor.analyze(grid.a).ok());
+      ASSERT_TRUE(factor.factorize(grid.a).ok());
+      factor.solve_forward(b);
+      factor.solve_backward(0.0, x);
+      if (expected.empty()) expected = x;
+      EXPECT_TRUE(x == expected) << threads << " threads, " << flushed_before;
+      volatile float smallest = std::numeric_limits<float>::min(), half = 0.5f;
+      EXPECT_EQ(smallest * half == 0.0f, flushed_before);
+    }
+  set_thread_count(usual);
 }
 
 TEST(BlockFactorFallback, OverflowInSinglePrecisionIsReported) {

@@ -5,7 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include "linalg/spring_grid.h"
 #include "solve/constrained_case.h"
+#include "taut/base/parallel.h"
 #include "taut/constraint/reduction.h"
 #include "taut/force/assembler.h"
 #include "taut/force/cloth_springs.h"
@@ -120,6 +122,43 @@ TEST(CoreBound, SpringWhoseBlockSurvivesIsNotInTheRemainder) {
   const std::vector<double> masses(3, 0.5);
   assembler.assemble(std::vector{request, request}, {masses, 1.0, {}, 0.0}, a, b);
   EXPECT_NEAR(remainder_ratio(a, assembler.core_mask(ForceClass::stretch), masses), 2.0 / 0.5, 1e-5);
+}
+
+// Of thousands of rows, several cores at once: the largest eigenvalue of all, and the same bits for any number of threads.
+TEST(CoreBound, FindsTheLargestRowOfMany) {
+  Random random(10);
+  const SpringGrid grid(random, 60, 50);
+  const BlockPattern& p = *grid.a.pattern;
+  std::vector<double> masses;
+  for (Index i = 0; i < p.rows(); ++i) masses.push_back(random.uniform(0.5, 2.0));
+  std::vector<std::uint8_t> all(grid.sides.size(), 1), none(grid.sides.size(), 0);
+  const std::vector<std::span<const std::uint8_t>> cores{grid.sides, all, none};
+  std::vector<double> expected;
+  for (const auto& core : cores) {
+    double largest = 0.0;
+    for (Index i = 0; i < p.rows(); ++i) {
+      Mat3 sum = Mat3::Zero();
+      for (Index k = p.row_start[i]; k < p.row_start[i + 1]; ++k)
+        for (Index r = 0; r < 3 && !core[k] && p.column[k] != i; ++r)
+          for (Index c = 0; c < 3; ++c) sum(r, c) -= grid.a.block(i, k)[r * p.width(i) + c];
+      largest = std::max(largest, Eigen::SelfAdjointEigenSolver<Mat3>(sum).eigenvalues()[2] / masses[i]);
+    }
+    expected.push_back(largest);
+  }
+  const int usual = thread_count();
+  std::vector<double> first;
+  for (const int threads : {1, 2, 3, 4}) {
+    set_thread_count(threads);
+    const std::vector<double> ratios = remainder_ratios(grid.a, cores, masses);
+    if (first.empty()) first = ratios;
+    EXPECT_EQ(ratios, first) << threads << " threads";
+    for (std::size_t c = 0; c < cores.size(); ++c) EXPECT_EQ(remainder_ratio(grid.a, cores[c], masses), ratios[c]);
+  }
+  set_thread_count(usual);
+  for (std::size_t c = 0; c < cores.size(); ++c) {
+    EXPECT_GE(first[c], expected[c]);
+    EXPECT_LE(first[c], expected[c] * (1.0 + 1e-6));
+  }
 }
 
 TEST(CoreBound, NothingLeftOutIsZero) {

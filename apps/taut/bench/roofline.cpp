@@ -86,13 +86,14 @@ class Phases {
           factor.solve_forward(load);
           factor.solve_backward(0.0, x);
         }) - rows_.back().milliseconds);
-    if (single) measure_remainder(system, factor.analyzed_blocks());
+    if (single) measure_remainder(system, factor);
   }
 
   // What core_fast multiplies by instead of A.
-  void measure_remainder(const LinearSystem& system, std::span<const std::uint8_t> blocks) {
+  void measure_remainder(const LinearSystem& system, const BlockCholesky& factor) {
     BlockRemainder remainder;
-    remainder.analyze(system.matrix->pattern, blocks);
+    remainder.analyze(system.matrix->pattern, factor.analyzed_blocks(), factor.parallelograms());
+    remainder.set_replaced(true);
     const std::size_t n = system.rhs.size();
     std::vector<double> r(n, 1.0), c(n, 1.0), p(n, 0.0), q(n);
     const double values = static_cast<double>(remainder.nonzeros());

@@ -21,6 +21,7 @@
 // The first forward solve costs next to nothing when factorize does it on the way.
 //
 // Precision: `single` halves the memory that the solves read and doubles the speed of the arithmetic; meant for preconditioners.
+// Subnormal numbers count as zero (base/flush_subnormals.h), so a matrix in single precision should not be smaller than 1e-30 throughout.
 // `automatic` begins in single precision and factorises again in double precision when a pivot fails, which statistics count.
 //
 // Outcomes: not_positive_definite and not_finite name the first unknown, in the order of elimination, whose pivot is not a positive finite

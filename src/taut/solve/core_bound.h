@@ -10,6 +10,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "taut/linalg/block_csr.h"
 
@@ -17,9 +18,10 @@ namespace taut {
 
 // ρ of a cloth matrix of 3x3 blocks and its core (one byte a block, 1: in the core); masses: kg, one a node. Every element's block rows sum
 // to zero, so D_R,i = -Σ A_ij over the blocks outside the core, whatever the elements. Rounded upwards. -1, not known,
-// where a block outside the core is not symmetric: no element of two nodes makes such a one. Parallel, allocates one double a
-// node.
+// where a block outside the core is not symmetric: no element of two nodes makes such a one.
 double remainder_ratio(const BlockCsr& a, std::span<const std::uint8_t> core, std::span<const double> masses);
+// Of several cores: A is read once.
+std::vector<double> remainder_ratios(const BlockCsr& a, std::span<const std::span<const std::uint8_t>> cores, std::span<const double> masses);
 
 // The same for an empty core, whose P is A's block diagonal: 2 max_i tr(A_ii)/tr(Σ_j A_ij) >= cond(P⁻¹A), since a row of a cloth matrix
 // sums to mass and external damping, which are the same in all directions. Infinity where a row sums to nothing: not a cloth.

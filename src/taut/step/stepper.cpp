@@ -191,8 +191,12 @@ double Stepper::free_norm(const ConstraintSet& constraints, std::span<const Vec3
 }
 
 void Stepper::measure_rho() {
+  std::vector<Core*> asked;
+  std::vector<std::span<const std::uint8_t>> masks;
   for (Core* core : cores())
-    if (!core->mask.empty()) core->rho = taut::remainder_ratio(*current_a_, core->mask, external_.masses());
+    if (!core->mask.empty()) asked.push_back(core), masks.push_back(core->mask);
+  const std::vector<double> rho = remainder_ratios(*current_a_, masks, external_.masses());
+  for (std::size_t c = 0; c < asked.size(); ++c) asked[c]->rho = rho[c];
 }
 
 double Stepper::remainder_ratio() const { return taut::remainder_ratio(*current_a_, core_.mask, external_.masses()); }
