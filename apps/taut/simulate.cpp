@@ -26,7 +26,7 @@ void print_summary(const RunSummary& s, const Simulation& simulation, const Resu
     row("overshoot", fmt::format("up to {:.1f} % of a spring's length in {} steps, although they were halved {} times",
                                  100.0 * s.overshoots.largest, s.overshoots.steps, scene.time.max_halvings));
   if (s.deepest_m > 0.0) row("deepest in a solid", fmt::format("{:.3g} mm before it was moved out", 1000.0 * s.deepest_m));
-  if (s.fallbacks > 0) row("fall-backs", fmt::format("{} solves were done directly after the chosen solver failed", s.fallbacks));
+  if (s.fallbacks > 0) row("fall-backs", fmt::format("{} solves were begun again, with a factor in double precision or by a direct method", s.fallbacks));
   row("peak memory", fmt::format("{:.0f} MB", s.peak_memory_MB));
   fmt::print("\n");
   if (picture) row("picture", results.contact_sheet_file().string());

@@ -187,7 +187,8 @@ RunSummary run(Simulation& simulation, const ResultsFolder& results, RunObserver
       break;
     }
     if (record.fallbacks > 0)
-      observer.on_message(fmt::format("step {}: {} failed; {} solved it", record.step, simulation.scene().solver.name, record.solver));
+      observer.on_message(fmt::format("step {}: {} had to begin again, in double precision or with another method; {} solved it", record.step,
+                                      simulation.scene().solver.name, record.solver));
     const bool ends_frame = simulation.steps_done() % time.steps_per_frame == 0;
     stats.write(record, simulation.steps_done() / time.steps_per_frame);
     add_step(summary, record);
