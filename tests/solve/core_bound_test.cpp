@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "linalg/spring_grid.h"
 #include "solve/constrained_case.h"
 #include "taut/base/parallel.h"
@@ -159,6 +161,12 @@ TEST(CoreBound, FindsTheLargestRowOfMany) {
     EXPECT_GE(first[c], expected[c]);
     EXPECT_LE(first[c], expected[c] * (1.0 + 1e-6));
   }
+}
+
+TEST(CoreBound, IterationsStayACount) {
+  EXPECT_EQ(iteration_bound(std::numeric_limits<double>::infinity(), 1.0, 1e-3), 1'000'000'000);
+  EXPECT_EQ(iteration_bound(4.0, 1.0, 1e-3), 9);  // ceil(ln 4000)
+  EXPECT_EQ(iteration_bound(4.0, 1e-4, 1e-3), 0);
 }
 
 TEST(CoreBound, NothingLeftOutIsZero) {

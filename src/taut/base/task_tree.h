@@ -23,6 +23,11 @@
 
 namespace taut {
 
+struct SideTasks {
+  Index count = 0;
+  std::function<void(Index)> body;  // body(k) once for each of them
+};
+
 class TaskTree {
  public:
   TaskTree() = default;
@@ -35,18 +40,13 @@ class TaskTree {
   std::span<const Index> roots() const { return roots_; }
 
  private:
-  friend void run_upwards(TaskTree&, const std::function<void(Index)>&, const struct SideTasks&);
+  friend void run_upwards(TaskTree&, const std::function<void(Index)>&, const SideTasks&);
   friend void run_downwards(const TaskTree&, const std::function<void(Index)>&);
   void plan_way_down();
 
   std::vector<Index> parent_, child_start_, child_, leaves_, roots_;
   std::vector<Index> child_down_;  // child_ once more: first the one to go on with, then the others in the order in which they are left to be taken
   std::unique_ptr<std::atomic<Index>[]> open_children_;
-};
-
-struct SideTasks {
-  Index count = 0;
-  std::function<void(Index)> body;  // body(k) once for each of them
 };
 
 void run_upwards(TaskTree& tree, const std::function<void(Index)>& body, const SideTasks& beside = {});

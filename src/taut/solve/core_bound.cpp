@@ -129,7 +129,8 @@ int core_iteration_bound(double rho, double start_value, double tolerance) {
 int iteration_bound(double condition, double start_value, double tolerance) {
   if (start_value <= tolerance) return 0;
   const double root = std::sqrt(condition);
-  return static_cast<int>(std::max(1.0, std::ceil(0.5 * root * std::log(2.0 * root * start_value / tolerance))));
+  constexpr double most = 1e9;  // also where the condition is infinite
+  return static_cast<int>(std::clamp(std::ceil(0.5 * root * std::log(2.0 * root * start_value / tolerance)), 1.0, most));
 }
 
 }  // namespace taut

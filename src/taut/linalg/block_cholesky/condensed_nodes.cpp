@@ -5,8 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "taut/base/flush_subnormals.h"
-#include "taut/base/parallel.h"
 #include "taut/base/simd.h"
 #include "taut/linalg/block_cholesky/numeric_factor.h"
 #include "taut/linalg/block_cholesky/quad.h"
