@@ -3,7 +3,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "taut/scene/result_frames.h"
+#include "taut/results/result_frames.h"
 
 namespace taut::app {
 

@@ -2,8 +2,8 @@
 // Exports each frame as soon as a run has written it, and passes everything on to another observer. An export that fails does not end the
 // run: it is told once, and given up.
 
-#include "taut/scene/run.h"
-#include "taut/scene/sequence_export.h"
+#include "taut/results/run.h"
+#include "taut/results/sequence_export.h"
 
 namespace taut::app {
 

@@ -6,7 +6,7 @@
 
 #include <memory>
 
-#include "taut/scene/run.h"
+#include "taut/results/run.h"
 
 namespace taut::app {
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "progress.h"
-#include "taut/scene/run.h"
+#include "taut/results/run.h"
 
 namespace taut::app {
 

@@ -4,7 +4,7 @@
 #include "taut/base/error.h"
 #include "taut/io/obj.h"
 #include "taut/scene/scene_file.h"
-#include "taut/scene/simulation.h"
+#include "taut/sim/simulation.h"
 #include "verbs.h"
 
 namespace taut::app {

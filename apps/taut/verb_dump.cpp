@@ -2,7 +2,7 @@
 
 #include "progress.h"
 #include "taut/base/parallel.h"
-#include "taut/scene/dump.h"
+#include "taut/results/dump.h"
 #include "taut/scene/scene_file.h"
 #include "verbs.h"
 

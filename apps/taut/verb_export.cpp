@@ -3,7 +3,7 @@
 #include "counted.h"
 #include "frame_range.h"
 #include "taut/base/error.h"
-#include "taut/scene/sequence_export.h"
+#include "taut/results/sequence_export.h"
 #include "verbs.h"
 
 namespace taut::app {

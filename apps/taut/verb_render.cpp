@@ -7,7 +7,7 @@
 #include "render/film.h"
 #include "taut/base/error.h"
 #include "taut/base/parallel.h"
-#include "taut/scene/frame_picture.h"
+#include "taut/results/frame_picture.h"
 #include "verbs.h"
 
 namespace taut::app {

@@ -3,7 +3,7 @@
 #include "simulate.h"
 #include "taut/base/error.h"
 #include "taut/base/parallel.h"
-#include "taut/scene/result_frames.h"
+#include "taut/results/result_frames.h"
 #include "taut/scene/scene_file.h"
 #include "verbs.h"
 

@@ -9,7 +9,7 @@
 #include "taut/base/error.h"
 #include "taut/base/file.h"
 #include "taut/base/parallel.h"
-#include "taut/scene/system_files.h"
+#include "taut/results/system_files.h"
 #include "verbs.h"
 
 namespace taut::app {

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "program.h"
-#include "scene/tangled_scenes.h"
+#include "sim/tangled_scenes.h"
 
 namespace taut::test {
 namespace {

@@ -1,7 +1,7 @@
 // The bound of docs/mathematics.md, 5 on real cloth matrices: λmax(P⁻¹A) <= 2, λmin(P⁻¹A) >= 1/(1+ρ), and with it the number of corePCG's
 // iterations, measured by dense eigenvalues, over stiffnesses, time steps and constraints.
 
-#include "taut/solve/core_bound.h"
+#include "taut/core/core_bound.h"
 
 #include <gtest/gtest.h>
 
@@ -11,8 +11,8 @@
 #include "solve/constrained_case.h"
 #include "taut/base/parallel.h"
 #include "taut/constraint/reduction.h"
-#include "taut/force/assembler.h"
-#include "taut/force/cloth_springs.h"
+#include "taut/element/assembler.h"
+#include "taut/element/cloth_springs.h"
 #include "taut/solve/core_spectrum.h"
 
 namespace taut::test {

@@ -1,12 +1,12 @@
 // Which links enter the core: the rules on random graphs, and the promise, iterations within the bound, on sheets of any material.
 
-#include "taut/solve/core_choice.h"
+#include "taut/core/core_choice.h"
 
 #include <gtest/gtest.h>
 
 #include "solve/constrained_case.h"
 #include "solve/material_sheet.h"
-#include "taut/solve/core_bound.h"
+#include "taut/core/core_bound.h"
 
 namespace taut::test {
 namespace {

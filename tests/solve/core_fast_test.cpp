@@ -6,8 +6,8 @@
 #include "solve/constrained_case.h"
 #include "solve/material_sheet.h"
 #include "taut/linalg/block_cholesky.h"
-#include "taut/linalg/block_remainder.h"
-#include "taut/solve/core_bound.h"
+#include "taut/core/block_remainder.h"
+#include "taut/core/core_bound.h"
 #include "taut/solve/reference.h"
 
 namespace taut::test {

@@ -3,10 +3,10 @@
 #pragma once
 
 #include "solve/constrained_case.h"
-#include "taut/force/assembler.h"
-#include "taut/force/cloth_springs.h"
-#include "taut/solve/core_bound.h"
-#include "taut/solve/core_choice.h"
+#include "taut/element/assembler.h"
+#include "taut/element/cloth_springs.h"
+#include "taut/core/core_bound.h"
+#include "taut/core/core_choice.h"
 
 namespace taut::test {
 

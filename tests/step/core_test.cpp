@@ -4,8 +4,8 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "taut/force/cloth_springs.h"
-#include "taut/solve/core_bound.h"
+#include "taut/element/cloth_springs.h"
+#include "taut/core/core_bound.h"
 #include "taut/step/stepper.h"
 
 namespace taut {

@@ -9,7 +9,7 @@
 #include <stdexcept>
 
 #include "step/small_system.h"
-#include "taut/force/cloth_springs.h"
+#include "taut/element/cloth_springs.h"
 
 namespace taut {
 namespace {

@@ -6,7 +6,7 @@
 #include <array>
 #include <memory>
 
-#include "taut/force/spring_model.h"
+#include "taut/element/spring_model.h"
 #include "taut/step/stepper.h"
 
 namespace taut::test {

@@ -16,7 +16,7 @@
 #include "taut/base/error.h"
 #include "taut/base/timer.h"
 #include "taut/scene/scene_file.h"
-#include "taut/solve/core_bound.h"
+#include "taut/core/core_bound.h"
 #include "taut/solve/core_spectrum.h"
 #include "taut/solve/reference.h"
 

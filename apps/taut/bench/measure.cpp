@@ -11,7 +11,7 @@
 #include "taut/base/error.h"
 #include "taut/base/timer.h"
 #include "taut/constraint/reduction.h"
-#include "taut/solve/core_bound.h"
+#include "taut/core/core_bound.h"
 #include "taut/solve/reference.h"
 
 namespace taut::app {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "taut/scene/simulation.h"
+#include "taut/sim/simulation.h"
 
 namespace taut::app {
 

@@ -12,7 +12,7 @@
 #include "taut/base/timer.h"
 #include "taut/constraint/reduction.h"
 #include "taut/linalg/block_cholesky.h"
-#include "taut/linalg/block_remainder.h"
+#include "taut/core/block_remainder.h"
 #include "taut/linalg/sparse_cholesky.h"
 #include "taut/scene/scene_file.h"
 #include "taut/solve/full_space.h"
@@ -30,7 +30,7 @@ constexpr Grid grids[] = {{41, "6.67e-3"}, {81, "5.55e-3"}, {161, "3.67e-3"}, {3
 
 double bytes_of(std::span<const std::uint8_t> blocks) { return 72.0 * static_cast<double>(std::ranges::count(blocks, std::uint8_t{1})); }
 
-// Flops of one spring's gradient and stiffness, of which damping and the sums into A are a third; an estimate, counted in force/spring_law.cpp.
+// Flops of one spring's gradient and stiffness, of which damping and the sums into A are a third; an estimate, counted in element/spring_law.cpp.
 constexpr double flops_per_spring_block = 120.0;
 
 // All phases of one step's system at the state the simulation is in.

@@ -54,7 +54,7 @@ class ResultFiles {
   // when it is something else.
   std::optional<ArrayFile> open_array(const std::string& name, std::string_view type, std::int64_t row) const;
   std::optional<ArrayFile> open_frame(int frame) const;
-  // What touches each node (scene/node_contact.h).
+  // What touches each node (sim/node_contact.h).
   std::optional<ArrayFile> open_contact(int frame) const;
   bool has_frame(int frame) const { return open_in_frames(frame_name(frame)).has_value(); }
   bool has_contact(int frame) const { return open_in_frames(contact_name(frame)).has_value(); }

@@ -5,8 +5,8 @@
 #include <random>
 
 #include "taut/base/error.h"
-#include "taut/force/cloth_springs.h"
-#include "taut/force/explicit_split.h"
+#include "taut/element/cloth_springs.h"
+#include "taut/element/explicit_split.h"
 #include "taut/mesh/mesh_sum.h"
 #include "taut/mesh/topology.h"
 #include "taut/scene/cloth_shape.h"

@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "taut/constraint/constraint_set.h"
-#include "taut/force/external.h"
-#include "taut/force/spring_model.h"
+#include "taut/element/external.h"
+#include "taut/element/spring_model.h"
 #include "taut/scene/scene.h"
 #include "taut/step/state.h"
 

@@ -10,7 +10,7 @@
 #include "taut/base/types.h"
 #include "taut/contact/contact_options.h"
 #include "taut/contact/solid.h"
-#include "taut/force/spring_material.h"
+#include "taut/element/spring_material.h"
 #include "taut/mesh/grid.h"
 #include "taut/mesh/tube.h"
 #include "taut/solve/solver_options.h"
@@ -24,7 +24,7 @@ struct TimeOptions {
   int steps_per_frame = 1;
   IntegratorKind integrator = IntegratorKind::semi_implicit_euler;
   NewtonOptions newton;
-  double overshoot_limit = 0.05;  // share of a spring's rest length, force/overshoot.h; beyond it the step is halved
+  double overshoot_limit = 0.05;  // share of a spring's rest length, element/overshoot.h; beyond it the step is halved
   int max_halvings = 4;
   bool operator==(const TimeOptions&) const = default;
 };

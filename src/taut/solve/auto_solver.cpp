@@ -8,7 +8,7 @@
 #include "taut/base/error.h"
 #include "taut/linalg/lanczos.h"
 #include "taut/linalg/vector_ops.h"
-#include "taut/solve/core_bound.h"
+#include "taut/core/core_bound.h"
 
 namespace taut {
 

@@ -29,7 +29,7 @@
 // early goes on with another method. core_fast proves its error after the solve, SolveSummary::error_bound; (error_bound/stop_value)² then
 // is what the condition is to others.
 //
-// Before a method's first solve its condition is taken for that of the block diagonal (solve/core_bound.h), a core's for the own core's bound.
+// Before a method's first solve its condition is taken for that of the block diagonal (core/core_bound.h), a core's for the own core's bound.
 //
 // Deterministic. What later choices depend on is in memory(), a few numbers, so that a resumed simulation takes the same way.
 

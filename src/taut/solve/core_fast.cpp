@@ -8,11 +8,11 @@
 #include "taut/base/parallel.h"
 #include "taut/base/timer.h"
 #include "taut/linalg/vector_ops.h"
-#include "taut/solve/core_bound.h"
+#include "taut/core/core_bound.h"
 #include "taut/solve/full_space.h"
 #include "taut/solve/preconditioner_choice.h"
 #include "taut/solve/reduced_pcg.h"
-#include "taut/solve/replacement_choice.h"
+#include "taut/core/replacement_choice.h"
 
 namespace taut {
 

@@ -8,14 +8,14 @@
 //   For elements of two nodes; done where ρ is known. Where it fails (a pivot of the lumped matrix in double precision), nothing is lumped.
 // - Where last step's x was smooth, parallelograms stand in for springs outside the core: the other diagonals of a grid's cells. P <= A is lost then,
 //   the bound on the condition is (1 + 4 ρ_Q) (1 + 2 ρ_D), and iterations are fewer (docs/mathematics.md, 5, "Stand-ins";
-//   solve/replacement_choice.h). Needs LinearSystem::last and ::masses.
+//   core/replacement_choice.h). Needs LinearSystem::last and ::masses.
 // - Neither Ã nor P̃ is formed: products take A or blocks of it, the factorisation takes A's core blocks, and constrained nodes are looked at
 //   one by one (solve/full_space.h).
 // - Ordering and symbolic work are done once per topology and core, whatever contacts do and whatever SolverOptions::reuse_analysis
 //   says; numbers are fresh in every solve.
 // - Springs outside the core whose block has a place in the factor, by fill-in, enter the core: they cost nothing there, so the core is
 //   larger than the paper's and the iterations are fewer. Most shear springs of a grid do. The bound for the smaller core holds.
-// - A c = P c + E c, and P c is known: only the blocks of E, outside the core, are multiplied (linalg/block_remainder.h). So in single
+// - A c = P c + E c, and P c is known: only the blocks of E, outside the core, are multiplied (core/block_remainder.h). So in single
 //   precision and where they are lumped; else products take A.
 // - The stop test needs forward solves only, δ = rᵀ P̃⁻¹ r = |L⁻¹ Uᵀ r|²: δ0 and the first δ come with the factorisation, and the backward
 //   solve of the last residual is saved. k iterations take k forward and k backward solves.
@@ -34,7 +34,7 @@
 // Stop test: core_pcg's.
 
 #include "taut/linalg/block_cholesky.h"
-#include "taut/linalg/block_remainder.h"
+#include "taut/core/block_remainder.h"
 #include "taut/linalg/krylov.h"
 #include "taut/solve/solver.h"
 

@@ -5,7 +5,7 @@
 #include "taut/base/parallel.h"
 #include "taut/base/timer.h"
 #include "taut/linalg/factor_preconditioner.h"
-#include "taut/solve/core_bound.h"
+#include "taut/core/core_bound.h"
 #include "taut/solve/preconditioner_choice.h"
 #include "taut/solve/reduced_pcg.h"
 

@@ -6,7 +6,7 @@
 #include "taut/linalg/factor_preconditioner.h"
 #include "taut/linalg/lanczos.h"
 #include "taut/linalg/pcg.h"
-#include "taut/solve/core_bound.h"
+#include "taut/core/core_bound.h"
 #include "taut/solve/preconditioner_choice.h"
 #include "taut/solve/reduced_system.h"
 

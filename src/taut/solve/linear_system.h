@@ -9,7 +9,7 @@
 //   z            3N doubles, the prescribed part of x (its free part is ignored); may be empty without constraints
 //   guess        3N doubles, last step's x, or empty; iterative methods start at S guess + (I-S) z (Ascher & Boxerman 2003)
 //   guess_is_iterate    the guess is no last step's x but one for this very system: Newton's last, or what another method has left
-//   last         3N doubles, last step's x, or empty: nobody starts there, it only tells how smooth x may be (solve/replacement_choice.h)
+//   last         3N doubles, last step's x, or empty: nobody starts there, it only tells how smooth x may be (core/replacement_choice.h)
 //   stiffness    σ, what the elements can add to a node's diagonal block, relative to its mass: |A_ii| <= (1 + σ) m_i; tells how exact a
 //                factor in single precision is (solve/core_fast.h). Negative: not known
 //   masses       N doubles, kg, those that ρ is relative to; or empty
@@ -65,7 +65,7 @@ struct SolveSummary {
   double stop_value = 0.0;       // iterative: sqrt(δ/δ0) at the end (residual ratio for BiCGSTAB)
   double start_value = 0.0;      // the same for the initial guess
   double error_bound = -1.0;     // |error|_A / |x|_A at the end is no larger (core_fast, from rest); negative: not known
-  int bound_iterations = -1;     // core PCG: what they cannot exceed (solve/core_bound.h); -1: no bound known
+  int bound_iterations = -1;     // core PCG: what they cannot exceed (core/core_bound.h); -1: no bound known
   double relative_residual = 0;  // true one, recomputed from A, b, x: |S(b - A x)| / |S(b - A(I-S)z)|; not what the method believes
   double reduce_ms = 0.0;        // forming Ã, b̃ and the core
   double order_ms = 0.0;         // analysis (ordering and symbolic work)

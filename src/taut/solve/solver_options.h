@@ -10,7 +10,7 @@ struct SolverOptions {
   std::string name = "core_pcg";
   // Ascher & Boxerman's stop test: δ <= tolerance² δ0, δ = rᵀ M_p⁻¹ r, δ0 = b̂ᵀ M_p⁻¹ b̂.
   double tolerance = 1e-3;
-  // Which springs make the matrix core: "stretch", the paper's; "auto", chosen by strength (solve/core_choice.h); empty: auto for the
+  // Which springs make the matrix core: "stretch", the paper's; "auto", chosen by strength (core/core_choice.h); empty: auto for the
   // solver `auto`, stretch for all others.
   std::string core = {};
   // 0: ten times the number of unknowns, at least 1000.

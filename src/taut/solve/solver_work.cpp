@@ -40,7 +40,7 @@ FactorSize estimate_factor(const SystemSize& size, double nonzeros) {
 
 namespace {
 
-// Bytes of a number of a 3x3 block with its share of the block's place: in A, and outside the core (linalg/block_remainder.h).
+// Bytes of a number of a 3x3 block with its share of the block's place: in A, and outside the core (core/block_remainder.h).
 constexpr double in_matrix = 8.5, outside_core = 4.9;
 
 // A product that reads so many bytes, and the loop's dot products and updates.

@@ -4,7 +4,7 @@
 //   semi_implicit_euler   (M + hD + h²K) dv = h (f - h K v);   v += dv, x += h v                       (Baraff & Witkin 1998)
 //   imex                  the same, with K and spring D of the stretch springs only; f of all          (Ascher et al. 1997)
 //   imex_adaptive         the same, with K and D of all springs but those that an explicit step takes  (Boxerman & Ascher 2004;
-//                         stably at this step length                                                    force/explicit_split.h)
+//                         stably at this step length                                                    element/explicit_split.h)
 //   bdf2                  (M + 2h/3 D + 4h²/9 K) dx = M [δ/3 + h/9 (8 v_n - 2 v_{n-1})] + 4h²/9 (f + D v_n) + 2h/9 D δ
 //                         δ = x_n - x_{n-1};  x += dx, v = (3 dx - δ)/(2h)                             (Choi & Ko 2002)
 //   newton                M dv = h f(x + h (v + dv), v + dv), f at the end of the step: linearised     (Hauth 2004;
@@ -18,8 +18,8 @@
 #include <string>
 
 #include "taut/constraint/constraint_set.h"
-#include "taut/force/assembler.h"
-#include "taut/force/external.h"
+#include "taut/element/assembler.h"
+#include "taut/element/external.h"
 #include "taut/step/integrator_options.h"
 #include "taut/step/state.h"
 

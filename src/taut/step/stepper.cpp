@@ -9,8 +9,8 @@
 #include "taut/base/timer.h"
 #include "taut/constraint/reduction.h"
 #include "taut/linalg/vector_ops.h"
-#include "taut/solve/core_bound.h"
-#include "taut/solve/core_choice.h"
+#include "taut/core/core_bound.h"
+#include "taut/core/core_choice.h"
 #include "taut/step/newton.h"
 
 namespace taut {

@@ -69,7 +69,7 @@ class Stepper {
   // ρ of docs/mathematics.md, 5 for the assembled system and its core.
   double remainder_ratio() const;
   // The cores that a solver may be given, for steps of up to h: all stretch springs, these and shear, or those that are strong
-  // (solve/core_choice.h).
+  // (core/core_choice.h).
   std::vector<std::uint8_t> stretch_core() const { return assembler_.core_mask(ForceClass::stretch); }
   std::vector<std::uint8_t> unbent_core() const;
   std::vector<std::uint8_t> chosen_core(double h) const;

@@ -1,0 +1,68 @@
+#pragma once
+// Puts the force models' elements together into A (3x3 blocks) and the right-hand side.
+//
+//   A_ij = sum of the matrix blocks of the elements that couple i and j  +  δ_ij (m_i mass + external * D_ext,i)
+//   b_i  = sum of the elements' vectors
+//
+// The pattern is that of the *implicit* models (IMEX leaves shear and bend out: the "thin matrix") and is built once. Each step, elements are evaluated in
+// parallel into flat arrays and then gathered block row by block row, in the order of the models' connections: parallel, no atomics, the same bits
+// for any thread count, nothing allocated.
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+
+#include "taut/element/force_model.h"
+#include "taut/linalg/block_csr.h"
+
+namespace taut {
+
+class Assembler {
+ public:
+  // models: not owned, must outlive this. implicit[m] says whether model m enters the matrix.
+  Assembler(Index nodes, std::vector<const ForceModel*> models, std::vector<bool> implicit);
+
+  const std::shared_ptr<const BlockPattern>& pattern() const { return pattern_; }
+  std::span<const ForceModel* const> models() const { return models_; }
+  bool is_implicit(std::size_t model) const { return implicit_[model]; }
+
+  // 1 for each block of the pattern that a model of `core_class` fills, and for the diagonal (paper Section 6: A_core keeps these).
+  std::vector<std::uint8_t> core_mask(ForceClass core_class) const;
+
+  // For each block of the pattern off the diagonal, a bound on the norm of what the elements add to it with these factors of K and D, in
+  // whatever state; 0 on the diagonal.
+  std::vector<double> block_bounds(double matrix_stiffness, double matrix_damping) const;
+  // How many elements have a block of the mask off the diagonal.
+  Index elements_in(std::span<const std::uint8_t> mask) const;
+
+  struct Diagonal {
+    std::span<const double> masses;   // kg
+    double mass = 1.0;                // factor
+    std::span<const Mat3> damping;    // D_ext, or empty
+    double external = 0.0;            // factor
+  };
+  // requests: one per model. Overwrites a (same pattern) and b (one entry per node). Explicit models must not ask for a matrix (asserted).
+  void assemble(std::span<const ForceRequest> requests, const Diagonal& diagonal, BlockCsr& a, std::span<Vec3> b);
+
+ private:
+  struct Contribution {  // block or vector `id` of the flat arrays, with sign and transposition
+    std::uint32_t bits;
+    Index id() const { return static_cast<Index>(bits >> 2); }
+    bool negative() const { return bits & 1u; }
+    bool transposed() const { return bits & 2u; }
+  };
+  void build_pattern(Index nodes);
+  void build_gather(Index nodes);
+  void gather_row(Index i, const Diagonal& diagonal, BlockCsr& a) const;
+
+  std::vector<const ForceModel*> models_;
+  std::vector<bool> implicit_;
+  std::shared_ptr<const BlockPattern> pattern_;
+  std::vector<Index> block_base_, vector_base_;        // where each model's part of the flat arrays begins
+  std::vector<Index> block_start_, vector_start_;      // gather lists, per block of the pattern and per node
+  std::vector<Contribution> block_list_, vector_list_;
+  std::vector<double> blocks_;
+  std::vector<Vec3> vectors_;
+};
+
+}  // namespace taut
