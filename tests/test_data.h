@@ -1,5 +1,6 @@
 #pragma once
-// The third-party data that some tests read: $TAUT_DATA, or ../shared/data beside the repository. Absent: the test is skipped.
+// The third-party data that some tests read: $TAUT_DATA, or ../shared/data beside the repository.
+// Absent: the test is skipped.
 
 #include <cstdlib>
 #include <filesystem>
@@ -9,7 +10,9 @@ namespace taut::test {
 
 inline std::optional<std::filesystem::path> data_folder() {
   const char* chosen = std::getenv("TAUT_DATA");
-  const std::filesystem::path folder = chosen ? std::filesystem::path(chosen) : std::filesystem::path(TAUT_SOURCE_DIR) / "../shared/data";
+  const std::filesystem::path folder =
+      chosen ? std::filesystem::path(chosen)
+             : std::filesystem::path(TAUT_SOURCE_DIR) / "../shared/data";
   std::error_code failure;
   if (!std::filesystem::is_directory(folder, failure)) return std::nullopt;
   return folder;

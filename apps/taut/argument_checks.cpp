@@ -17,7 +17,8 @@ template <class Holds>
 CLI::Validator number(const std::string& expected, Holds holds) {
   return {[=](const std::string& text) {
             double value = 0.0;
-            if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && holds(value)) return std::string();
+            if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && holds(value))
+              return std::string();
             return fmt::format("{} is not allowed: a number {} was expected", text, expected);
           },
           ""};
@@ -26,7 +27,8 @@ CLI::Validator number(const std::string& expected, Holds holds) {
 }  // namespace
 
 CLI::Validator at_least(double low) {
-  return number(fmt::format("of at least {:.10g}", low), [=](double value) { return value >= low; });
+  return number(fmt::format("of at least {:.10g}", low),
+                [=](double value) { return value >= low; });
 }
 
 CLI::Validator above(double low) {
@@ -34,7 +36,8 @@ CLI::Validator above(double low) {
 }
 
 CLI::Validator between(double low, double high) {
-  return number(fmt::format("from {:.10g} to {:.10g}", low, high), [=](double value) { return value >= low && value <= high; });
+  return number(fmt::format("from {:.10g} to {:.10g}", low, high),
+                [=](double value) { return value >= low && value <= high; });
 }
 
 CLI::Validator solver_name() {
@@ -43,7 +46,8 @@ CLI::Validator solver_name() {
             const std::vector<std::string> known = solver_names();
             const std::string near = nearest_name(text, known);
             return fmt::format("'{}' is no solver of this program; {}there are {}", text,
-                               near.empty() ? "" : "did you mean '" + near + "'? ", fmt::join(known, ", "));
+                               near.empty() ? "" : "did you mean '" + near + "'? ",
+                               fmt::join(known, ", "));
           },
           ""};
 }

@@ -1,5 +1,6 @@
 #pragma once
-// What an option's value may be, checked before anything is read or written; a value that may not be is bad usage (exit code 2).
+// What an option's value may be, checked before anything is read or written; a value that may not
+// be is bad usage (exit code 2).
 
 #include <CLI/CLI.hpp>
 

@@ -32,7 +32,9 @@ std::optional<FrameRange> parse(const std::string& text) {
 CLI::Validator frame_range_syntax() {
   return {[](const std::string& text) {
             return parse(text) ? std::string()
-                               : "'" + text + "' is no range of frames; FIRST:LAST or FIRST:LAST:STEP was expected, such as 10:50";
+                               : "'" + text +
+                                     "' is no range of frames; FIRST:LAST or FIRST:LAST:STEP was "
+                                     "expected, such as 10:50";
           },
           ""};
 }
@@ -40,7 +42,9 @@ CLI::Validator frame_range_syntax() {
 int last_frame_said(const ResultFrames& frames) {
   const int last = frames.last_frame();
   if (frames.results().has_gap())
-    fmt::print(stderr, "note: {} is missing although there are later frames; only 0 to {} are used. Run the scene anew to have them all\n",
+    fmt::print(stderr,
+               "note: {} is missing although there are later frames; only 0 to {} are used. Run "
+               "the scene anew to have them all\n",
                frames.results().frame_file(last + 1).string(), last);
   return last;
 }
@@ -51,7 +55,8 @@ FrameRange chosen_frames(const std::string& text, const ResultFrames& frames) {
   range.first = std::max(range.first, 0);
   if (range.last < 0) range.last = last;
   if (range.last > last || range.first > last)
-    throw InputError({frames.results().folder().string()}, fmt::format("has the frames 0 to {}; {} was asked for", last, text));
+    throw InputError({frames.results().folder().string()},
+                     fmt::format("has the frames 0 to {}; {} was asked for", last, text));
   return range;
 }
 

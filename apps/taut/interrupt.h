@@ -1,5 +1,6 @@
 #pragma once
-// Ctrl-C asks politely: the first one stops after the current step, with everything so far written; the second ends the program at once.
+// Ctrl-C asks politely: the first one stops after the current step, with everything so far written;
+// the second ends the program at once.
 
 #include <atomic>
 

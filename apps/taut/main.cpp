@@ -21,8 +21,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What did not get through to a full disk is an error: a script must not take half an answer for a whole one.
-bool output_is_lost() { return std::fflush(stdout) != 0 || std::ferror(stdout) != 0 || !std::cout.flush(); }
+// What did not get through to a full disk is an error: a script must not take half an answer for a
+// whole one.
+bool output_is_lost() {
+  return std::fflush(stdout) != 0 || std::ferror(stdout) != 0 || !std::cout.flush();
+}
 
 int fail(const std::string& message) {
   fmt::print(stderr, "taut: {}\n", message);
@@ -31,14 +34,16 @@ int fail(const std::string& message) {
 
 std::string describe(const fs::filesystem_error& error) {
   const fs::path& path = error.path2().empty() ? error.path1() : error.path2();
-  const char* advice = error.code() == std::errc::not_a_directory ? "a part of this name is a file, not a folder: give another"
-                                                                  : "check the folder's permissions and free space, or give another";
+  const char* advice = error.code() == std::errc::not_a_directory
+                           ? "a part of this name is a file, not a folder: give another"
+                           : "check the folder's permissions and free space, or give another";
   return fmt::format("{}: {}; {}", path.string(), error.code().message(), advice);
 }
 
 std::vector<std::string> verbs_of(const CLI::App& app) {
   std::vector<std::string> verbs;
-  for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) verbs.push_back(verb->get_name());
+  for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; }))
+    verbs.push_back(verb->get_name());
   return verbs;
 }
 
@@ -46,15 +51,18 @@ std::vector<std::string> verbs_of(const CLI::App& app) {
 std::string unknown_verb(const std::vector<std::string>& verbs, const std::string& word) {
   const std::string near = taut::nearest_name(word, verbs);
   return fmt::format("'{}' is no verb of taut; {}", word,
-                     near.empty() ? fmt::format("there are {}", fmt::join(verbs, ", ")) : "did you mean '" + near + "'?");
+                     near.empty() ? fmt::format("there are {}", fmt::join(verbs, ", "))
+                                  : "did you mean '" + near + "'?");
 }
 
 // `./taut`, the launcher, has two verbs of its own.
 std::string footer() {
-  std::string text = "Example: taut run scenes/ball.toml\n`taut VERB --help` tells more about each verb.";
+  std::string text =
+      "Example: taut run scenes/ball.toml\n`taut VERB --help` tells more about each verb.";
   if (std::getenv("TAUT_LAUNCHER"))
     text +=
-        "\nOf the launcher ./taut itself: `./taut test` builds and runs the tests, `./taut setup pardiso` fetches Intel oneMKL for the "
+        "\nOf the launcher ./taut itself: `./taut test` builds and runs the tests, `./taut setup "
+        "pardiso` fetches Intel oneMKL for the "
         "solver pardiso.";
   return text;
 }
@@ -109,5 +117,6 @@ int main(int argc, char** argv) {
   app.footer(footer());
   const int exit_code = run_program(app, argc, argv);
   if (!output_is_lost()) return exit_code;
-  return fail("standard output could not be written (is the disk full?): what was printed is not complete");
+  return fail(
+      "standard output could not be written (is the disk full?): what was printed is not complete");
 }

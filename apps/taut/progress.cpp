@@ -16,7 +16,8 @@ namespace {
 std::string duration(double seconds) {
   if (seconds < 100.0) return fmt::format("{:.0f} s", seconds);
   const int minutes = static_cast<int>(std::min(seconds, 1e8) / 60.0 + 0.5);
-  return minutes < 100 ? fmt::format("{} min", minutes) : fmt::format("{} h {:02} min", minutes / 60, minutes % 60);
+  return minutes < 100 ? fmt::format("{} min", minutes)
+                       : fmt::format("{} h {:02} min", minutes / 60, minutes % 60);
 }
 
 std::string pace(double steps_per_s) {
@@ -24,7 +25,8 @@ std::string pace(double steps_per_s) {
                             : fmt::format("{:.1f} s a step", 1.0 / std::max(steps_per_s, 1e-9));
 }
 
-// How fast, and how long still, from the steps of this run so far; a resumed run does not count those before it.
+// How fast, and how long still, from the steps of this run so far; a resumed run does not count
+// those before it.
 class Pace {
  public:
   void note(const StepRecord& r, int steps_total) {
@@ -50,15 +52,19 @@ int terminal_columns() {
 
 std::string bar(int done, int total) {
   constexpr int width = 20;
-  const int filled = total > 0 ? static_cast<int>(static_cast<long long>(done) * width / total) : width;
-  return "[" + std::string(static_cast<std::size_t>(filled), '#') + std::string(static_cast<std::size_t>(width - filled), '.') + "] ";
+  const int filled =
+      total > 0 ? static_cast<int>(static_cast<long long>(done) * width / total) : width;
+  return "[" + std::string(static_cast<std::size_t>(filled), '#') +
+         std::string(static_cast<std::size_t>(width - filled), '.') + "] ";
 }
 
 class LineProgress : public RunObserver {
  public:
   LineProgress(const Scene& scene, bool terminal) : time_(scene.time), terminal_(terminal) {
     // The first step of a large scene takes a while.
-    if (terminal_) show(0, time_.frames * time_.steps_per_frame, {fmt::format("frame 0/{}", time_.frames), "begins"});
+    if (terminal_)
+      show(0, time_.frames * time_.steps_per_frame,
+           {fmt::format("frame 0/{}", time_.frames), "begins"});
   }
   ~LineProgress() override {
     if (terminal_ && on_line_) fmt::print(stderr, "\n");
@@ -72,9 +78,12 @@ class LineProgress : public RunObserver {
     last_shown_ = pace_.elapsed();
     shown_ = true;
     show(r.step, steps_total,
-         {fmt::format("frame {}/{}", r.step / time_.steps_per_frame, steps_total / time_.steps_per_frame), duration(pace_.left()) + " left",
-          fmt::format("t = {:.3f} s", r.time), pace(pace_.steps_per_s()), fmt::format("{} iterations", r.iterations),
-          fmt::format("stretch {:.1f} %", 100.0 * r.max_stretch), fmt::format("{} contacts", r.contacts)});
+         {fmt::format("frame {}/{}", r.step / time_.steps_per_frame,
+                      steps_total / time_.steps_per_frame),
+          duration(pace_.left()) + " left", fmt::format("t = {:.3f} s", r.time),
+          pace(pace_.steps_per_s()), fmt::format("{} iterations", r.iterations),
+          fmt::format("stretch {:.1f} %", 100.0 * r.max_stretch),
+          fmt::format("{} contacts", r.contacts)});
   }
 
   void on_message(const std::string& text) override {
@@ -83,16 +92,19 @@ class LineProgress : public RunObserver {
   }
 
  private:
-  // What does not fit into a terminal's line is left out, the last first: a line that wraps could not be written over.
+  // What does not fit into a terminal's line is left out, the last first: a line that wraps could
+  // not be written over.
   void show(int step, int steps_total, const std::vector<std::string>& parts) {
     std::string line = terminal_ ? bar(step, steps_total) : "";
-    const std::size_t columns = terminal_ ? static_cast<std::size_t>(terminal_columns()) - 1 : std::string::npos;
+    const std::size_t columns =
+        terminal_ ? static_cast<std::size_t>(terminal_columns()) - 1 : std::string::npos;
     for (std::size_t k = 0; k < parts.size(); ++k) {
       const std::string part = (k > 0 ? "  " : "") + parts[k];
       if (line.size() + part.size() > columns) break;
       line += part;
     }
-    fmt::print(stderr, "{}{}{}", terminal_ ? "\r" : "", line.substr(0, columns), terminal_ ? "\033[K" : "\n");
+    fmt::print(stderr, "{}{}{}", terminal_ ? "\r" : "", line.substr(0, columns),
+               terminal_ ? "\033[K" : "\n");
     std::fflush(stderr);
     on_line_ = terminal_;
   }
@@ -129,8 +141,10 @@ class JsonProgress : public RunObserver {
 
  private:
   static void print(const nlohmann::ordered_json& line) {
-    // Where nobody takes the lines any more (a full disk) the run goes on; main() says so at the end.
-    const std::string text = line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+    // Where nobody takes the lines any more (a full disk) the run goes on; main() says so at the
+    // end.
+    const std::string text =
+        line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
     std::fputs(text.c_str(), stdout);
     std::fflush(stdout);
   }

@@ -1,5 +1,6 @@
 #pragma once
-// What `run` and `resume` share: run with progress and interruption, draw the contact sheet, say what came out and where it is.
+// What `run` and `resume` share: run with progress and interruption, draw the contact sheet, say
+// what came out and where it is.
 
 #include <string>
 
@@ -15,6 +16,7 @@ struct SimulateOptions {
 };
 
 // Returns the exit code.
-int simulate(Simulation& simulation, const ResultsFolder& results, const SimulateOptions& options, int first_frame);
+int simulate(Simulation& simulation, const ResultsFolder& results, const SimulateOptions& options,
+             int first_frame);
 
 }  // namespace taut::app

@@ -20,19 +20,24 @@ int export_frames(ExportArguments& arguments) {
   SequenceExportOptions& options = arguments.options;
   const FrameRange range = chosen_frames(arguments.frames, frames);
   options.first = range.first, options.last = range.last, options.stride = range.stride;
-  options.folder = arguments.out.empty() ? frames.results().folder() / options.format : std::filesystem::path(arguments.out);
+  options.folder = arguments.out.empty() ? frames.results().folder() / options.format
+                                         : std::filesystem::path(arguments.out);
   if (!arguments.up.empty()) options.up = arguments.up == "y" ? UpAxis::y : UpAxis::z;
   if (!frames.run_has_finished())
-    fmt::print(stderr, "note: the run has not finished (it is running, or was interrupted); there are frames 0 to {} so far\n",
+    fmt::print(stderr,
+               "note: the run has not finished (it is running, or was interrupted); there are "
+               "frames 0 to {} so far\n",
                frames.last_frame());
   SequenceExport sequence(frames, options);
   sequence.add_frames_until(options.last);
   sequence.finish();
   if (const auto others = sequence.files_of_other_frames(); !others.empty())
     fmt::print(stderr,
-               "note: {} files of other frames stay in {} from an earlier export, such as {}; remove them if they do not belong here\n",
+               "note: {} files of other frames stay in {} from an earlier export, such as {}; "
+               "remove them if they do not belong here\n",
                others.size(), options.folder.string(), others.front().filename().string());
-  fmt::print("{} of {} and {} written to {}\n", counted(sequence.frames_added(), "frame"), counted(frames.cloth().parts().size(), "cloth"),
+  fmt::print("{} of {} and {} written to {}\n", counted(sequence.frames_added(), "frame"),
+             counted(frames.cloth().parts().size(), "cloth"),
              counted(frames.scene().solids.size(), "solid"), options.folder.string());
   return 0;
 }
@@ -53,22 +58,31 @@ std::vector<std::string> export_format_names() {
 }
 
 void add_export_verb(CLI::App& app, int& exit_code) {
-  CLI::App* verb = app.add_subcommand("export", "Convert the frames of a simulation, finished or still running, for other programs");
+  CLI::App* verb = app.add_subcommand(
+      "export",
+      "Convert the frames of a simulation, finished or still running, for other programs");
   auto arguments = std::make_shared<ExportArguments>();
   verb->add_option("DIR", arguments->folder, "Results folder of `taut run`")->required();
-  verb->add_option("--format", arguments->options.format, format_help())->required()->check(CLI::IsMember(export_format_names()));
+  verb->add_option("--format", arguments->options.format, format_help())
+      ->required()
+      ->check(CLI::IsMember(export_format_names()));
   verb->add_option("--out", arguments->out, "Folder to write to (default: DIR/FORMAT)");
-  verb->add_option("--frames", arguments->frames, "Only these, both included (default: all there are)")
+  verb->add_option("--frames", arguments->frames,
+                   "Only these, both included (default: all there are)")
       ->type_name("FIRST:LAST[:STEP]")
       ->check(frame_range_syntax());
-  verb->add_option("--scale", arguments->options.scale, "Lengths in the files: 100 makes centimetres of metres (default: 1)")
+  verb->add_option("--scale", arguments->options.scale,
+                   "Lengths in the files: 100 makes centimetres of metres (default: 1)")
       ->check(above(0));
-  verb->add_option("--up", arguments->up, "Upward axis of the files: y turns (x, y, z) to (x, z, -y) (default: z; y for gltf)")
+  verb->add_option(
+          "--up", arguments->up,
+          "Upward axis of the files: y turns (x, y, z) to (x, z, -y) (default: z; y for gltf)")
       ->check(CLI::IsMember({"y", "z"}));
   verb->footer(
       "Example: taut export out/ball --format usd\n"
       "Example: taut export out/ball --format pc2 --scale 100 --up y --frames 0:40 --out maya\n"
-      "Vertices keep their order, texture coordinates are kept, solids are exported as meshes. docs/formats.md says what is in the files "
+      "Vertices keep their order, texture coordinates are kept, solids are exported as meshes. "
+      "docs/formats.md says what is in the files "
       "and\n"
       "how to open them. `taut run SCENE --export FORMAT` exports while it runs.");
   verb->callback([arguments, &exit_code] { exit_code = export_frames(*arguments); });

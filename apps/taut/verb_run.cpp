@@ -28,8 +28,10 @@ int run_scene(const RunArguments& arguments) {
                                                    : ProgressStyle::automatic;
   if (style == ProgressStyle::automatic)
     for (const std::string& doubt : doubtful(scene)) fmt::print(stderr, "note: {}\n", doubt);
-  const ResultsFolder results(arguments.out.empty() ? std::filesystem::path("out") / std::filesystem::path(arguments.scene).stem()
-                                                    : std::filesystem::path(arguments.out));
+  const ResultsFolder results(arguments.out.empty()
+                                  ? std::filesystem::path("out") /
+                                        std::filesystem::path(arguments.scene).stem()
+                                  : std::filesystem::path(arguments.out));
   Simulation simulation(std::move(scene));
   for (const std::string& note : results.start(simulation))
     if (style != ProgressStyle::quiet) fmt::print(stderr, "note: {}\n", note);
@@ -43,25 +45,36 @@ void add_run_verb(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<RunArguments>();
   verb->add_option("SCENE", arguments->scene, "Scene file (TOML)")->required();
   verb->add_option("--out", arguments->out, "Folder for the results (default: out/SCENE)");
-  verb->add_option("--frames", arguments->frames, "Frames to write after the first, instead of the scene's time.frames: fewer or more")
+  verb->add_option(
+          "--frames", arguments->frames,
+          "Frames to write after the first, instead of the scene's time.frames: fewer or more")
       ->check(between(1, 1'000'000));
-  verb->add_option("--threads", arguments->threads, "Threads to use (default: all processors); the results do not depend on it")
+  verb->add_option("--threads", arguments->threads,
+                   "Threads to use (default: all processors); the results do not depend on it")
       ->check(between(1, 1024));
-  verb->add_option("--solver", arguments->solver, "Linear solver, as solver.name in the scene")->check(solver_name());
-  verb->add_option("--set", arguments->settings, "Change a key of the scene: key=value, e.g. cloth.k_stretch=600; may be repeated")
+  verb->add_option("--solver", arguments->solver, "Linear solver, as solver.name in the scene")
+      ->check(solver_name());
+  verb->add_option(
+          "--set", arguments->settings,
+          "Change a key of the scene: key=value, e.g. cloth.k_stretch=600; may be repeated")
       ->take_all()
       ->type_name("KEY=VALUE");
   verb->add_flag("--untangle", arguments->untangle,
-                 "Draw cloth that intersects at the start, or is inside a solid, apart before the first step; frame 0 shows it then");
+                 "Draw cloth that intersects at the start, or is inside a solid, apart before the "
+                 "first step; frame 0 shows it then");
   verb->add_flag("--quiet", arguments->quiet, "No progress and no table");
-  verb->add_flag("--json-lines", arguments->json_lines, "Progress as one JSON object a step on stdout");
+  verb->add_flag("--json-lines", arguments->json_lines,
+                 "Progress as one JSON object a step on stdout");
   verb->add_flag("--no-picture", arguments->no_picture, "Draw no contact sheet at the end");
-  verb->add_option("--export", arguments->export_format, "Export the frames as they come into OUT/FORMAT, as `taut export` does afterwards")
+  verb->add_option(
+          "--export", arguments->export_format,
+          "Export the frames as they come into OUT/FORMAT, as `taut export` does afterwards")
       ->type_name("FORMAT")
       ->check(CLI::IsMember(export_format_names()));
   verb->footer(
       "Example: taut run scenes/ball.toml --set cloth.grid.nodes=[41,41] --out out/small\n"
-      "Ctrl-C stops after the current step with everything so far valid; `taut resume DIR` goes on.");
+      "Ctrl-C stops after the current step with everything so far valid; `taut resume DIR` goes "
+      "on.");
   verb->callback([arguments, &exit_code] { exit_code = run_scene(*arguments); });
 }
 

@@ -31,7 +31,8 @@ int view(const ViewArguments& arguments) {
   const ResultFiles files(arguments.folder);
   ViewServer server(files, read_page(page_folder()), arguments.port);
   const auto& interrupted = interrupt_flag();
-  fmt::print("{}: {}\n\n  {}\n\nCtrl-C ends it.\n", arguments.folder, state_line(files), server.address());
+  fmt::print("{}: {}\n\n  {}\n\nCtrl-C ends it.\n", arguments.folder, state_line(files),
+             server.address());
   std::fflush(stdout);
   if (!arguments.no_open && !open_browser(server.address()))
     fmt::print(stderr, "found no browser to open; open the address above in yours\n");
@@ -45,14 +46,20 @@ int view(const ViewArguments& arguments) {
 }  // namespace
 
 void add_view_verb(CLI::App& app, int& exit_code) {
-  CLI::App* verb = app.add_subcommand("view", "Look at a result in the browser, live while it is computed");
+  CLI::App* verb =
+      app.add_subcommand("view", "Look at a result in the browser, live while it is computed");
   auto arguments = std::make_shared<ViewArguments>();
-  verb->add_option("DIR", arguments->folder, "Results folder of `taut run`, finished, running or still empty")->required();
-  verb->add_option("--port", arguments->port, "Port of 127.0.0.1 to listen on (default: a free one)")->check(between(1, 65535));
+  verb->add_option("DIR", arguments->folder,
+                   "Results folder of `taut run`, finished, running or still empty")
+      ->required();
+  verb->add_option("--port", arguments->port,
+                   "Port of 127.0.0.1 to listen on (default: a free one)")
+      ->check(between(1, 65535));
   verb->add_flag("--no-open", arguments->no_open, "Print the address, open no browser");
   verb->footer(
       "Example: taut view out/ball\n"
-      "Reads DIR only and changes nothing. Only this machine can reach it; the address holds a key that others on it do not know.");
+      "Reads DIR only and changes nothing. Only this machine can reach it; the address holds a key "
+      "that others on it do not know.");
   verb->callback([arguments, &exit_code] { exit_code = view(*arguments); });
 }
 

@@ -1,6 +1,7 @@
 #pragma once
-// The program's verbs, one file each. A verb adds itself as a subcommand; its callback returns by setting `exit_code`:
-// 0 done, 1 failed, 2 bad usage. Errors are thrown as InputError and printed by main().
+// The program's verbs, one file each. A verb adds itself as a subcommand; its callback returns by
+// setting `exit_code`: 0 done, 1 failed, 2 bad usage. Errors are thrown as InputError and printed
+// by main().
 
 #include <CLI/CLI.hpp>
 

@@ -12,16 +12,20 @@ namespace taut {
 
 namespace {
 
-// Whatever BLAS the system's alternatives give us, if it is OpenBLAS it is told how many threads to use.
+// Whatever BLAS the system's alternatives give us, if it is OpenBLAS it is told how many threads to
+// use.
 std::atomic<int> blas_threads = 1;
 
 void tell_blas_its_threads() {
   using SetThreads = void (*)(int);
-  if (const auto set_threads = reinterpret_cast<SetThreads>(dlsym(RTLD_DEFAULT, "openblas_set_num_threads"))) set_threads(blas_threads);
+  if (const auto set_threads =
+          reinterpret_cast<SetThreads>(dlsym(RTLD_DEFAULT, "openblas_set_num_threads")))
+    set_threads(blas_threads);
 }
 
-// CHOLMOD's supernodal loops ask OpenMP for four threads, however many processors there are, for loops of a few hundred numbers: on two
-// processors a factorisation then takes twice as long as on one thread. While this lives, OpenMP starts no threads.
+// CHOLMOD's supernodal loops ask OpenMP for four threads, however many processors there are, for
+// loops of a few hundred numbers: on two processors a factorisation then takes twice as long as on
+// one thread. While this lives, OpenMP starts no threads.
 class SerialOpenMp {
  public:
   SerialOpenMp() {
@@ -50,7 +54,8 @@ Status status_from(const cholmod_common& common, const char* phase) {
     case CHOLMOD_DSMALL:
       return {};
     case CHOLMOD_NOT_POSDEF:
-      return {Outcome::not_positive_definite, fmt::format("CHOLMOD, {}: the matrix is not positive definite", phase)};
+      return {Outcome::not_positive_definite,
+              fmt::format("CHOLMOD, {}: the matrix is not positive definite", phase)};
     case CHOLMOD_OUT_OF_MEMORY:
     case CHOLMOD_TOO_LARGE:
       return {Outcome::out_of_memory, fmt::format("CHOLMOD, {}: not enough memory", phase)};
@@ -84,22 +89,26 @@ struct CholmodCholesky::Implementation {
     if (factor) cholmod_free_factor(&factor, &common);
   }
 
-  // The first column whose pivot is not positive and finite, or n. CHOLMOD itself stops only at zero pivots of L D Lᵀ, and lets NaN pass.
+  // The first column whose pivot is not positive and finite, or n. CHOLMOD itself stops only at
+  // zero pivots of L D Lᵀ, and lets NaN pass.
   std::size_t first_bad_column() const {
     const auto good = [](double pivot) { return pivot > 0.0 && std::isfinite(pivot); };
     const double* x = static_cast<const double*>(factor->x);
     if (!factor->is_super) {
-      const auto* start = static_cast<const Index*>(factor->p);  // the pivot comes first in its column
+      // the pivot comes first in its column
+      const auto* start = static_cast<const Index*>(factor->p);
       for (std::size_t j = 0; j < factor->n; ++j)
         if (!good(x[start[j]])) return j;
       return factor->n;
     }
-    const auto *first = static_cast<const Index*>(factor->super), *row_start = static_cast<const Index*>(factor->pi),
+    const auto *first = static_cast<const Index*>(factor->super),
+               *row_start = static_cast<const Index*>(factor->pi),
                *value_start = static_cast<const Index*>(factor->px);
     for (std::size_t s = 0; s < factor->nsuper; ++s) {
       const std::ptrdiff_t rows = row_start[s + 1] - row_start[s];
       for (Index j = first[s]; j < first[s + 1]; ++j)
-        if (!good(x[value_start[s] + (j - first[s]) * (rows + 1)])) return static_cast<std::size_t>(j);
+        if (!good(x[value_start[s] + (j - first[s]) * (rows + 1)]))
+          return static_cast<std::size_t>(j);
     }
     return factor->n;
   }
@@ -130,7 +139,8 @@ struct CholmodCholesky::Implementation {
     rhs.x = const_cast<double*>(b.data());
     rhs.xtype = CHOLMOD_REAL;
     rhs.dtype = CHOLMOD_DOUBLE;
-    if (!cholmod_solve2(system, factor, &rhs, nullptr, &solution, nullptr, &workspace_y, &workspace_e, &common))
+    if (!cholmod_solve2(system, factor, &rhs, nullptr, &solution, nullptr, &workspace_y,
+                        &workspace_e, &common))
       return status_from(common, "solve");
     const double* values = static_cast<const double*>(solution->x);
     std::copy(values, values + x.size(), x.begin());
@@ -163,13 +173,17 @@ Status CholmodCholesky::factorize(const BlockCsr& a) {
   if (status.outcome == Outcome::not_positive_definite) {
     bad = std::min(me.factor->minor, me.factor->n - 1);
   } else if (status.ok() && (bad = me.first_bad_column()) < me.factor->n) {
-    status = {Outcome::not_positive_definite, "CHOLMOD, factorisation: the matrix is not positive definite"};
+    status = {Outcome::not_positive_definite,
+              "CHOLMOD, factorisation: the matrix is not positive definite"};
   }
-  if (bad < me.factor->n) status.message += fmt::format(" (found at unknown {})", permutation()[bad]);
+  if (bad < me.factor->n)
+    status.message += fmt::format(" (found at unknown {})", permutation()[bad]);
   return status;
 }
 
-Status CholmodCholesky::solve(std::span<const double> b, std::span<double> x) { return implementation_->solve(CHOLMOD_A, b, x); }
+Status CholmodCholesky::solve(std::span<const double> b, std::span<double> x) {
+  return implementation_->solve(CHOLMOD_A, b, x);
+}
 
 Status CholmodCholesky::solve_permuted(std::span<const double> b, std::span<double> x) {
   return implementation_->solve(CHOLMOD_LDLt, b, x);
@@ -185,8 +199,11 @@ FactorStatistics CholmodCholesky::statistics() const {
   const cholmod_common& common = implementation_->common;
   const cholmod_factor* factor = implementation_->factor;
   if (!factor) return {};
-  const char* ordering = factor->ordering == CHOLMOD_AMD ? "amd" : factor->ordering == CHOLMOD_METIS ? "metis" : "other";
-  const double bytes = factor->is_super ? 8.0 * static_cast<double>(factor->xsize) + 4.0 * static_cast<double>(factor->ssize)
+  const char* ordering = factor->ordering == CHOLMOD_AMD     ? "amd"
+                         : factor->ordering == CHOLMOD_METIS ? "metis"
+                                                             : "other";
+  const double bytes = factor->is_super ? 8.0 * static_cast<double>(factor->xsize) +
+                                              4.0 * static_cast<double>(factor->ssize)
                                         : 12.0 * static_cast<double>(factor->nzmax);
   return {common.lnz, common.fl, bytes, ordering};
 }

@@ -1,13 +1,13 @@
 #pragma once
 // oneMKL, loaded when it is first needed.
 //
-// It is not linked, because its libraries also define BLAS and LAPACK: in a program that links CHOLMOD too, the dynamic linker would give
-// CHOLMOD Intel's dgemm_ in place of its own, and no comparison of the two would be one. libmkl_rt, loaded with RTLD_LOCAL, keeps its names
-// to itself.
+// It is not linked, because its libraries also define BLAS and LAPACK: in a program that links
+// CHOLMOD too, the dynamic linker would give CHOLMOD Intel's dgemm_ in place of its own, and no
+// comparison of the two would be one. libmkl_rt, loaded with RTLD_LOCAL, keeps its names to itself.
 //
-// Settings: GNU OpenMP threads (libgomp is there wherever GCC is), 32-bit integers, and conditional numerical reproducibility
-// (MKL_CBWR_AUTO), with which PARDISO gives the same bits for any number of threads. The environment variable MKL_CBWR, when set, decides
-// instead: MKL_CBWR=OFF is faster.
+// Settings: GNU OpenMP threads (libgomp is there wherever GCC is), 32-bit integers, and conditional
+// numerical reproducibility (MKL_CBWR_AUTO), with which PARDISO gives the same bits for any number
+// of threads. The environment variable MKL_CBWR, when set, decides instead: MKL_CBWR=OFF is faster.
 
 #include <mkl_pardiso.h>
 

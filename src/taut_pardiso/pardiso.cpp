@@ -10,13 +10,17 @@ PardisoCholesky::~PardisoCholesky() = default;
 
 Status PardisoCholesky::analyze(const BlockCsr& a) { return factor_->analyze(a); }
 Status PardisoCholesky::factorize(const BlockCsr& a) { return factor_->factorize(a); }
-Status PardisoCholesky::solve(std::span<const double> b, std::span<double> x) { return factor_->solve(b, x); }
+Status PardisoCholesky::solve(std::span<const double> b, std::span<double> x) {
+  return factor_->solve(b, x);
+}
 std::span<const Index> PardisoCholesky::permutation() const { return factor_->permutation(); }
 FactorStatistics PardisoCholesky::statistics() const { return factor_->statistics(); }
 
 void register_pardiso() {
   register_cholesky("pardiso", [] { return std::make_unique<PardisoCholesky>(); });
-  register_solver("pardiso_cgs", [](const SolverOptions& options) { return std::make_unique<PardisoCgs>(options); });
+  register_solver("pardiso_cgs", [](const SolverOptions& options) {
+    return std::make_unique<PardisoCgs>(options);
+  });
 }
 
 }  // namespace taut

@@ -15,12 +15,15 @@ namespace {
 
 int digits_for(double tolerance) {
   // log10(1e-3) may come out a little off -3, which is not to cost a digit.
-  return tolerance > 0.0 ? std::clamp(static_cast<int>(std::ceil(-std::log10(tolerance) - 1e-9)), 1, 15) : 15;
+  return tolerance > 0.0
+             ? std::clamp(static_cast<int>(std::ceil(-std::log10(tolerance) - 1e-9)), 1, 15)
+             : 15;
 }
 
 }  // namespace
 
-PardisoCgs::PardisoCgs(SolverOptions options) : ConstrainedSolver(std::move(options)), factor_(std::make_unique<PardisoFactor>()) {}
+PardisoCgs::PardisoCgs(SolverOptions options)
+    : ConstrainedSolver(std::move(options)), factor_(std::make_unique<PardisoFactor>()) {}
 PardisoCgs::~PardisoCgs() = default;
 
 void PardisoCgs::run(const LinearSystem& system, std::span<double> x, SolveSummary& summary) {
@@ -38,7 +41,8 @@ void PardisoCgs::run(const LinearSystem& system, std::span<double> x, SolveSumma
   if (summary.status.ok()) solve_reduced(summary);
   if (!summary.status.ok()) return initial_guess(system, x);
   reduced_.prolong_to(system, x);
-  summary.memory_bytes = static_cast<double>(reduced_.matrix().bytes()) + factor_->statistics().bytes;
+  summary.memory_bytes =
+      static_cast<double>(reduced_.matrix().bytes()) + factor_->statistics().bytes;
 }
 
 void PardisoCgs::solve_reduced(SolveSummary& summary) {
@@ -52,14 +56,17 @@ void PardisoCgs::solve_reduced(SolveSummary& summary) {
   CgReport cg;
   // NaN is for the factorisation, which refuses it.
   summary.status = all_finite(reduced_.matrix().values)
-                       ? factor_->solve_by_cg(reduced_.matrix(), digits_for(options_.tolerance), reduced_.rhs(), reduced_.solution(), cg)
+                       ? factor_->solve_by_cg(reduced_.matrix(), digits_for(options_.tolerance),
+                                              reduced_.rhs(), reduced_.solution(), cg)
                        : factor_->factorize(reduced_.matrix());
   has_factor_ = summary.status.ok();
   (cg.factorized ? summary.factor_ms : summary.solve_ms) = timer.lap();
   summary.iterations = cg.factorized ? 0 : cg.iterations;
   if (!cg.factorized || !had_factor) return;
   ++fallbacks_;
-  summary.remark = fmt::format("factorised anew: CG on the kept factor gave up (fall-back {} in {} systems)", fallbacks_, systems_);
+  summary.remark =
+      fmt::format("factorised anew: CG on the kept factor gave up (fall-back {} in {} systems)",
+                  fallbacks_, systems_);
 }
 
 }  // namespace taut

@@ -16,7 +16,8 @@ static_assert(sizeof(MKL_INT) == sizeof(Index), "the interface layer is LP64");
 // PARDISO takes as many threads as Taut's own loops.
 class ThreadScope {
  public:
-  explicit ThreadScope(const MklRuntime& mkl) : mkl_(mkl), before_(mkl.set_num_threads_local(thread_count())) {}
+  explicit ThreadScope(const MklRuntime& mkl)
+      : mkl_(mkl), before_(mkl.set_num_threads_local(thread_count())) {}
   ~ThreadScope() { mkl_.set_num_threads_local(before_); }
   ThreadScope(const ThreadScope&) = delete;
   ThreadScope& operator=(const ThreadScope&) = delete;
@@ -43,10 +44,12 @@ std::array<MKL_INT, 64> settings() {
 MKL_INT PardisoFactor::call(MKL_INT phase, double* b, double* x) {
   const MklRuntime& mkl = mkl_runtime();
   const ThreadScope threads(mkl);
-  const MKL_INT one = 1, positive_definite = 2, quiet = 0, n = static_cast<MKL_INT>(csc_.column_start.size()) - 1;
+  const MKL_INT one = 1, positive_definite = 2, quiet = 0,
+                n = static_cast<MKL_INT>(csc_.column_start.size()) - 1;
   MKL_INT error = 0;
-  mkl.pardiso(handle_.data(), &one, &one, &positive_definite, &phase, &n, csc_.value.data(), csc_.column_start.data(), csc_.row.data(),
-              permutation_.data(), &one, iparm_.data(), &quiet, b, x, &error);
+  mkl.pardiso(handle_.data(), &one, &one, &positive_definite, &phase, &n, csc_.value.data(),
+              csc_.column_start.data(), csc_.row.data(), permutation_.data(), &one, iparm_.data(),
+              &quiet, b, x, &error);
   return error;
 }
 
@@ -58,9 +61,13 @@ Status PardisoFactor::status_from(MKL_INT error, const char* phase) const {
       return {Outcome::out_of_memory, fmt::format("PARDISO, {}: not enough memory", phase)};
     case -4:  // iparm[29] counts equations from 1, in the matrix's own order
       return {Outcome::not_positive_definite,
-              fmt::format("PARDISO, {}: the matrix is not positive definite (found at unknown {})", phase, iparm_[29] - 1)};
+              fmt::format("PARDISO, {}: the matrix is not positive definite (found at unknown {})",
+                          phase, iparm_[29] - 1)};
     case -8:
-      return {Outcome::out_of_memory, fmt::format("PARDISO, {}: the factor needs more entries than 32-bit indices can count", phase)};
+      return {
+          Outcome::out_of_memory,
+          fmt::format("PARDISO, {}: the factor needs more entries than 32-bit indices can count",
+                      phase)};
     default:
       return {Outcome::breakdown, fmt::format("PARDISO, {}: error {}", phase, error)};
   }
@@ -97,7 +104,8 @@ Status PardisoFactor::solve(std::span<const double> b, std::span<double> x) {
   return status_from(call(33, rhs_.data(), x.data()), "solve");
 }
 
-Status PardisoFactor::solve_by_cg(const BlockCsr& a, int digits, std::span<const double> b, std::span<double> x, CgReport& report) {
+Status PardisoFactor::solve_by_cg(const BlockCsr& a, int digits, std::span<const double> b,
+                                  std::span<double> x, CgReport& report) {
   report = {};
   lower_triangle(a, csc_);
   if (csc_.row.empty()) return {};
@@ -110,8 +118,9 @@ Status PardisoFactor::solve_by_cg(const BlockCsr& a, int digits, std::span<const
   return status_from(error, "solve by CG");
 }
 
-// Whether the factor is another than when this was last asked. Intel's reference has a negative iparm[19] for CG that failed, but once
-// PARDISO has factorised, it solves by CG with the new factor and iparm[19] tells of that. The diagonal of the factor does not hide it.
+// Whether the factor is another than when this was last asked. Intel's reference has a negative
+// iparm[19] for CG that failed, but once PARDISO has factorised, it solves by CG with the new
+// factor and iparm[19] tells of that. The diagonal of the factor does not hide it.
 bool PardisoFactor::factor_is_new() {
   const MKL_INT one = 1;
   MKL_INT error = 0;
@@ -123,7 +132,8 @@ bool PardisoFactor::factor_is_new() {
 }
 
 FactorStatistics PardisoFactor::statistics() const {
-  // Memory kept from the analysis on, and that of factorisation and solve, both in units of 1024 bytes.
+  // Memory kept from the analysis on, and that of factorisation and solve, both in units of 1024
+  // bytes.
   const double bytes = 1024.0 * (static_cast<double>(iparm_[15]) + static_cast<double>(iparm_[16]));
   return {static_cast<double>(iparm_[17]), 1e6 * static_cast<double>(iparm_[18]), bytes, "metis"};
 }

@@ -1,6 +1,6 @@
 #pragma once
-// One PARDISO handle for a symmetric positive definite matrix (mtype 2), its phases as member functions. Names iparm[k] are those of
-// Intel's reference.
+// One PARDISO handle for a symmetric positive definite matrix (mtype 2), its phases as member
+// functions. Names iparm[k] are those of Intel's reference.
 
 #include <array>
 #include <span>
@@ -28,9 +28,11 @@ class PardisoFactor {
   Status factorize(const BlockCsr& a);  // phase 22
   // Phase 33. b and x may be the same memory.
   Status solve(std::span<const double> b, std::span<double> x);
-  // Phase 23 with iparm[3] = 10 digits + 2: solves a x = b by CG, to 10^-digits, with the factor that the last call of this function left.
-  // Where there is none since analyze(), or CG fails, PARDISO factorises `a`, solves with that, and keeps it.
-  Status solve_by_cg(const BlockCsr& a, int digits, std::span<const double> b, std::span<double> x, CgReport& report);
+  // Phase 23 with iparm[3] = 10 digits + 2: solves a x = b by CG, to 10^-digits, with the factor
+  // that the last call of this function left. Where there is none since analyze(), or CG fails,
+  // PARDISO factorises `a`, solves with that, and keeps it.
+  Status solve_by_cg(const BlockCsr& a, int digits, std::span<const double> b, std::span<double> x,
+                     CgReport& report);
 
   std::span<const Index> permutation() const { return permutation_; }
   FactorStatistics statistics() const;

@@ -14,8 +14,8 @@ namespace {
 std::string falling_point(int end, const std::string& truth) {
   std::string text;
   for (const int z : {1, end})
-    text +=
-        "1,4,1,4," + std::to_string(z) + ",1" + truth + "\n0,1,0,1,0,1" + truth + "\n1,1,0,1,0,1" + truth + "\n0,1,1,1,0,1" + truth + "\n";
+    text += "1,4,1,4," + std::to_string(z) + ",1" + truth + "\n0,1,0,1,0,1" + truth +
+            "\n1,1,0,1,0,1" + truth + "\n0,1,1,1,0,1" + truth + "\n";
   return text;
 }
 
@@ -46,9 +46,11 @@ TEST(CcdVerb, ComparesWithTrueAnswers) {
   folder.file("missed.csv", falling_point(2, ",1"));
   const ProgramEnd missed = taut(folder, {"ccd", "missed.csv", "--type", "vf"});
   EXPECT_EQ(missed.exit_code, 1);
-  EXPECT_NE(missed.err.find("1 collisions missed, 0 false alarms"), std::string::npos) << missed.err;
+  EXPECT_NE(missed.err.find("1 collisions missed, 0 false alarms"), std::string::npos)
+      << missed.err;
   // Within the separation it is none.
-  EXPECT_EQ(taut(folder, {"ccd", "missed.csv", "--type", "vf", "--separation", "1.5"}).exit_code, 0);
+  EXPECT_EQ(taut(folder, {"ccd", "missed.csv", "--type", "vf", "--separation", "1.5"}).exit_code,
+            0);
 }
 
 TEST(CcdVerb, MissesNothingOfTheDataSet) {
@@ -58,7 +60,8 @@ TEST(CcdVerb, MissesNothingOfTheDataSet) {
   int queries = 0;
   for (const auto& [name, type] : {std::pair{"vertex-face", "vf"}, std::pair{"edge-edge", "ee"}})
     for (const auto& entry : std::filesystem::directory_iterator(*data / "ccd/unit-tests" / name)) {
-      const ProgramEnd end = taut(folder, {"ccd", entry.path().string(), "--type", type, "--json", "r.json"});
+      const ProgramEnd end =
+          taut(folder, {"ccd", entry.path().string(), "--type", type, "--json", "r.json"});
       EXPECT_EQ(end.exit_code, 0) << end.err;
       const auto report = nlohmann::json::parse(read_text(folder / "r.json"));
       queries += report.at("queries").get<int>();

@@ -30,8 +30,9 @@ TEST(Plot, DrawsARunOverTime) {
   ASSERT_EQ(end.exit_code, 0) << end.err;
   EXPECT_EQ(end.out, "out/small/stats.svg\n");
   const std::string svg = read_text(folder / "out/small/stats.svg");
-  for (const char* text : {">iterations<", ">bound<", ">ms a step<", ">factorisation<", ">energy, J<", ">kinetic<", ">max stretch<",
-                           ">contacts<", ">simulated time, s<", ">18 steps<"})
+  for (const char* text :
+       {">iterations<", ">bound<", ">ms a step<", ">factorisation<", ">energy, J<", ">kinetic<",
+        ">max stretch<", ">contacts<", ">simulated time, s<", ">18 steps<"})
     EXPECT_NE(svg.find(text), std::string::npos) << text;
   ASSERT_EQ(taut(folder, {"plot", "out/small", "--out", "p/s.png"}).exit_code, 0);
   EXPECT_EQ(read_text(folder / "p/s.png").substr(1, 3), "PNG");
@@ -49,13 +50,15 @@ TEST(Plot, DrawsWhatThereIsOfARunThatHasNotEnded) {
   folder.file("out/small/stats.csv", stats.substr(0, stats.size() - 9));
   const ProgramEnd end = taut(folder, {"plot", "out/small"});
   ASSERT_EQ(end.exit_code, 0) << end.err;
-  EXPECT_NE(read_text(folder / "out/small/stats.svg").find(">17 steps; the run has not ended"), std::string::npos);
+  EXPECT_NE(read_text(folder / "out/small/stats.svg").find(">17 steps; the run has not ended"),
+            std::string::npos);
 
   std::filesystem::remove(folder / "out/small/stats.svg");
-  const std::vector<std::pair<std::string, std::string>> bad{{stats.substr(0, stats.find('\n') + 1), "no step"},
-                                                             {stats.substr(0, 7), "no whole line"},
-                                                             {stats.substr(0, stats.find('\n') + 1) + "1,2,3\n", "stats.csv:2"},
-                                                             {"a,b\n1,2\n", "'time'"}};
+  const std::vector<std::pair<std::string, std::string>> bad{
+      {stats.substr(0, stats.find('\n') + 1), "no step"},
+      {stats.substr(0, 7), "no whole line"},
+      {stats.substr(0, stats.find('\n') + 1) + "1,2,3\n", "stats.csv:2"},
+      {"a,b\n1,2\n", "'time'"}};
   for (const auto& [content, said] : bad) {
     folder.file("out/small/stats.csv", content);
     const ProgramEnd refused = taut(folder, {"plot", "out/small"});
@@ -71,8 +74,12 @@ TEST(Plot, RefusesWhatIsNoResult) {
   folder.file("text.json", "no json");
   folder.file("foreign.json", "{\"rows\": [{\"solver\": \"mpcg\"}], \"bench\": \"something\"}");
   const std::vector<std::pair<Names, std::string>> bad{
-      {{"."}, "stats.csv"},    {{"nowhere"}, "nowhere"},          {{"empty.json"}, "rows"},
-      {{"text.json"}, "rows"}, {{"foreign.json"}, "'something'"}, {{"empty.json", "--out", "a.pdf"}, ".svg or .png"}};
+      {{"."}, "stats.csv"},
+      {{"nowhere"}, "nowhere"},
+      {{"empty.json"}, "rows"},
+      {{"text.json"}, "rows"},
+      {{"foreign.json"}, "'something'"},
+      {{"empty.json", "--out", "a.pdf"}, ".svg or .png"}};
   for (const auto& [what, said] : bad) {
     Names arguments{"plot"};
     arguments.insert(arguments.end(), what.begin(), what.end());
@@ -84,8 +91,9 @@ TEST(Plot, RefusesWhatIsNoResult) {
 
 TEST(Bench, ScaleMeasuresEachMethodAtEachSize) {
   const WorkFolder folder;
-  const ProgramEnd end = taut(folder, {"bench", "scale", "--nodes", "441,1681", "--solver", "cholmod,core_pcg,mpcg", "--scenes", scenes,
-                                       "--json", "s.json", "--plot", "s.png"});
+  const ProgramEnd end =
+      taut(folder, {"bench", "scale", "--nodes", "441,1681", "--solver", "cholmod,core_pcg,mpcg",
+                    "--scenes", scenes, "--json", "s.json", "--plot", "s.png"});
   ASSERT_EQ(end.exit_code, 0) << end.err;
   EXPECT_NE(end.out.find("n^"), std::string::npos);
   EXPECT_EQ(read_text(folder / "s.png").substr(1, 3), "PNG");
@@ -113,8 +121,9 @@ TEST(Bench, ScaleMeasuresEachMethodAtEachSize) {
 
 TEST(Bench, FlatnessSweepsTheCellsAndKeepsTheBound) {
   const WorkFolder folder;
-  const ProgramEnd end = taut(folder, {"bench", "flatness", "--nodes", "169", "--k-stretch", "60,6000000", "--solver", "cholmod,core_pcg",
-                                       "--scenes", scenes, "--json", "f.json", "--plot", "f.svg"});
+  const ProgramEnd end =
+      taut(folder, {"bench", "flatness", "--nodes", "169", "--k-stretch", "60,6000000", "--solver",
+                    "cholmod,core_pcg", "--scenes", scenes, "--json", "f.json", "--plot", "f.svg"});
   ASSERT_EQ(end.exit_code, 0) << end.err;
   EXPECT_NE(end.out.find("held in all 24 cells"), std::string::npos) << end.out;
   EXPECT_NE(end.err.find("cell 24 of 24"), std::string::npos);
@@ -131,24 +140,28 @@ TEST(Bench, FlatnessSweepsTheCellsAndKeepsTheBound) {
   // rho grows with the square of the step (no spring is damped here).
   EXPECT_NEAR(rho.at(33e-3) / rho.at(1e-3), 33.0 * 33.0, 1e-6 * 33 * 33);
   const std::string svg = read_text(folder / "f.svg");
-  for (const char* text : {">core_pcg to 1e-3<", ">cholmod to 1e-6<", ">6e+06<", ">16.7 ms   600 / 50<"})
+  for (const char* text :
+       {">core_pcg to 1e-3<", ">cholmod to 1e-6<", ">6e+06<", ">16.7 ms   600 / 50<"})
     EXPECT_NE(svg.find(text), std::string::npos) << text;
 }
 
 TEST(Bench, Table2IsDrawnBesideThePaper) {
   const WorkFolder folder;
-  const ProgramEnd end = taut(folder, {"bench", "table2", "--nodes", "1681", "--k-stretch", "60", "--steps", "1", "--scenes", scenes,
-                                       "--json", "t.json", "--plot", "t.svg"});
+  const ProgramEnd end =
+      taut(folder, {"bench", "table2", "--nodes", "1681", "--k-stretch", "60", "--steps", "1",
+                    "--scenes", scenes, "--json", "t.json", "--plot", "t.svg"});
   ASSERT_EQ(end.exit_code, 0) << end.err;
   const std::string svg = read_text(folder / "t.svg");
-  for (const char* text : {">core_pcg<", ">paper: mpcg<", ">paper: core_pcg<", ">ball, 1681 nodes, IMEX<"})
+  for (const char* text :
+       {">core_pcg<", ">paper: mpcg<", ">paper: core_pcg<", ">ball, 1681 nodes, IMEX<"})
     EXPECT_EQ(count_of(svg, std::string("<text") + text), 1) << text;
 }
 
 TEST(Bench, RefusesBeforeItMeasures) {
   const WorkFolder folder;
   for (const Names& arguments :
-       {Names{"bench", "scale", "--scenes", scenes, "--plot", "s.pdf"}, Names{"bench", "flatness", "--scenes", scenes, "--nodes", "170"},
+       {Names{"bench", "scale", "--scenes", scenes, "--plot", "s.pdf"},
+        Names{"bench", "flatness", "--scenes", scenes, "--nodes", "170"},
         Names{"bench", "scale", "--scenes", scenes, "--nodes", "441", "--solver", "magic"}}) {
     const ProgramEnd end = taut(folder, arguments);
     EXPECT_EQ(end.exit_code, 1) << arguments.back();

@@ -1,5 +1,6 @@
 #pragma once
-// Runs the program as its users do, in a child process: what it printed, how it ended. TAUT_PROGRAM is the path of the built program.
+// Runs the program as its users do, in a child process: what it printed, how it ended. TAUT_PROGRAM
+// is the path of the built program.
 
 #include <fcntl.h>
 #include <sys/wait.h>
@@ -31,7 +32,8 @@ class WorkFolder {
  public:
   WorkFolder() {
     static std::atomic<int> made{0};
-    path_ = std::filesystem::temp_directory_path() / ("taut_apps_" + std::to_string(::getpid()) + "_" + std::to_string(made++));
+    path_ = std::filesystem::temp_directory_path() /
+            ("taut_apps_" + std::to_string(::getpid()) + "_" + std::to_string(made++));
     std::filesystem::create_directories(path_);
   }
   ~WorkFolder() {
@@ -59,9 +61,11 @@ struct ProgramEnd {
 // A started program; wait() must be called.
 class RunningProgram {
  public:
-  RunningProgram(const WorkFolder& folder, const std::vector<std::string>& arguments) : out_(folder / ".stdout"), err_(folder / ".stderr") {
+  RunningProgram(const WorkFolder& folder, const std::vector<std::string>& arguments)
+      : out_(folder / ".stdout"), err_(folder / ".stderr") {
     std::vector<char*> argv{const_cast<char*>(TAUT_PROGRAM)};
-    for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+    for (const std::string& argument : arguments)
+      argv.push_back(const_cast<char*>(argument.c_str()));
     argv.push_back(nullptr);
     child_ = ::fork();
     if (child_ != 0) return;
@@ -119,7 +123,8 @@ inline std::vector<std::string> fields_of(const std::string& line) {
 // File and folder names in a folder, sorted.
 inline std::vector<std::string> names_in(const std::filesystem::path& folder) {
   std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) names.push_back(entry.path().filename().string());
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    names.push_back(entry.path().filename().string());
   std::sort(names.begin(), names.end());
   return names;
 }

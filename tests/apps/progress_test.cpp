@@ -14,7 +14,8 @@ namespace taut::test {
 namespace {
 
 // What a terminal of this width is sent. stdout and stderr both go to it.
-std::string in_terminal(const WorkFolder& folder, unsigned short columns, std::vector<std::string> arguments) {
+std::string in_terminal(const WorkFolder& folder, unsigned short columns,
+                        std::vector<std::string> arguments) {
   winsize size{};
   size.ws_col = columns, size.ws_row = 24;
   int terminal = -1;
@@ -28,7 +29,8 @@ std::string in_terminal(const WorkFolder& folder, unsigned short columns, std::v
   }
   std::string seen;
   char piece[4096];
-  for (ssize_t n; (n = ::read(terminal, piece, sizeof piece)) > 0;) seen.append(piece, static_cast<std::size_t>(n));
+  for (ssize_t n; (n = ::read(terminal, piece, sizeof piece)) > 0;)
+    seen.append(piece, static_cast<std::size_t>(n));
   int state = 0;
   ::waitpid(child, &state, 0);
   ::close(terminal);
@@ -36,15 +38,19 @@ std::string in_terminal(const WorkFolder& folder, unsigned short columns, std::v
   return seen;
 }
 
-// The lines that were written over each other: from a carriage return to the erasing of what was left of the one before.
+// The lines that were written over each other: from a carriage return to the erasing of what was
+// left of the one before.
 std::vector<std::string> bars_of(const std::string& seen) {
   std::vector<std::string> bars;
   static const std::regex bar("\r(\\[[^\r\n\x1b]*)\x1b\\[K");
-  for (std::sregex_iterator at(seen.begin(), seen.end(), bar), end; at != end; ++at) bars.push_back((*at)[1]);
+  for (std::sregex_iterator at(seen.begin(), seen.end(), bar), end; at != end; ++at)
+    bars.push_back((*at)[1]);
   return bars;
 }
 
-std::vector<std::string> quick_run(const std::string& out) { return {"run", "small.toml", "--frames", "40", "--no-picture", "--out", out}; }
+std::vector<std::string> quick_run(const std::string& out) {
+  return {"run", "small.toml", "--frames", "40", "--no-picture", "--out", out};
+}
 
 TEST(Progress, TerminalShowsABarThatFills) {
   const WorkFolder folder;
@@ -86,7 +92,8 @@ TEST(Progress, LogFileGetsPlainLines) {
 TEST(Progress, JsonLinesTellEveryStepAndResumeHasThemToo) {
   const WorkFolder folder;
   folder.file("small.toml", small_scene());
-  const ProgramEnd end = taut(folder, {"run", "small.toml", "--out", "d", "--no-picture", "--json-lines"});
+  const ProgramEnd end =
+      taut(folder, {"run", "small.toml", "--out", "d", "--no-picture", "--json-lines"});
   ASSERT_EQ(end.exit_code, 0) << end.err;
   EXPECT_EQ(end.err, "");
   const auto lines = lines_of(end.out), rows = lines_of(read_text(folder / "d/stats.csv"));
@@ -100,7 +107,8 @@ TEST(Progress, JsonLinesTellEveryStepAndResumeHasThemToo) {
     EXPECT_EQ(line.at("frames"), 6);
     EXPECT_EQ(std::to_string(line.at("iterations").get<int>()), row[9]);
     EXPECT_EQ(std::to_string(line.at("contacts").get<int>()), row[6]);
-    EXPECT_NEAR(line.at("max_stretch").get<double>(), std::stod(row[19]), 1e-5 * std::abs(std::stod(row[19])) + 1e-12);
+    EXPECT_NEAR(line.at("max_stretch").get<double>(), std::stod(row[19]),
+                1e-5 * std::abs(std::stod(row[19])) + 1e-12);
     EXPECT_GE(line.at("left_s").get<double>(), 0.0);
   }
   EXPECT_EQ(nlohmann::json::parse(lines.back()).at("left_s"), 0.0);

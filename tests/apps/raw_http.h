@@ -55,13 +55,16 @@ inline Reply send_raw(int port, const std::string& request, int patience_ms = 20
   (void)!::write(socket, request.data(), request.size());
   std::string bytes;
   char piece[65536];
-  for (ssize_t n; (n = ::read(socket, piece, sizeof piece)) > 0;) bytes.append(piece, static_cast<std::size_t>(n));
+  for (ssize_t n; (n = ::read(socket, piece, sizeof piece)) > 0;)
+    bytes.append(piece, static_cast<std::size_t>(n));
   ::close(socket);
   return parse_reply(bytes);
 }
 
-inline std::string request_text(int port, const std::string& target, const std::string& method = "GET") {
-  return method + " " + target + " HTTP/1.1\r\nHost: 127.0.0.1:" + std::to_string(port) + "\r\nConnection: close\r\n\r\n";
+inline std::string request_text(int port, const std::string& target,
+                                const std::string& method = "GET") {
+  return method + " " + target + " HTTP/1.1\r\nHost: 127.0.0.1:" + std::to_string(port) +
+         "\r\nConnection: close\r\n\r\n";
 }
 
 }  // namespace taut::test

@@ -1,4 +1,5 @@
-// taut run, resume, check: exact file names and columns, exit codes, where messages go, interruption.
+// taut run, resume, check: exact file names and columns, exit codes, where messages go,
+// interruption.
 
 #include <gtest/gtest.h>
 
@@ -17,19 +18,25 @@ TEST(Run, WritesTheFilesAndColumnsThatAreDocumented) {
   const ProgramEnd end = taut(folder, {"run", "small.toml"});
   ASSERT_EQ(end.exit_code, 0) << end.err;
   const auto out = folder / "out/small";
-  EXPECT_EQ(names_in(out), (Names{"checkpoint", "contact_sheet.png", "frames", "scene.toml", "stats.csv", "summary.json"}));
+  EXPECT_EQ(names_in(out), (Names{"checkpoint", "contact_sheet.png", "frames", "scene.toml",
+                                  "stats.csv", "summary.json"}));
   EXPECT_EQ(names_in(out / "checkpoint"), Names{"state.bin"});
   const Names frames = names_in(out / "frames");
-  for (int f = 0; f <= 6; ++f) EXPECT_TRUE(std::ranges::find(frames, "00000" + std::to_string(f) + ".npy") != frames.end()) << f;
-  EXPECT_EQ(read_text(out / "frames/000003.npy").size(), 128u + 72 * 3 * 4);  // header of .npy, then 72 nodes of three floats
+  for (int f = 0; f <= 6; ++f)
+    EXPECT_TRUE(std::ranges::find(frames, "00000" + std::to_string(f) + ".npy") != frames.end())
+        << f;
+  // header of .npy, then 72 nodes of three floats
+  EXPECT_EQ(read_text(out / "frames/000003.npy").size(), 128u + 72 * 3 * 4);
   EXPECT_EQ(read_text(out / "contact_sheet.png").substr(1, 3), "PNG");
 
   const Names stats = lines_of(read_text(out / "stats.csv"));
   ASSERT_EQ(stats.size(), 19u);
   const std::string columns =
-      "step,time,frame,nodes,dof,constraints,contacts,solver,core_springs,iterations,relative_residual,assemble_ms,order_ms,factor_ms,"
+      "step,time,frame,nodes,dof,constraints,contacts,solver,core_springs,iterations,relative_"
+      "residual,assemble_ms,order_ms,factor_ms,"
       "solve_ms,contact_ms,"
-      "step_ms,kinetic_J,elastic_J,max_stretch,intersections,bound_iterations,precision,fallbacks,collapsed_springs,retries,zone_nodes";
+      "step_ms,kinetic_J,elastic_J,max_stretch,intersections,bound_iterations,precision,fallbacks,"
+      "collapsed_springs,retries,zone_nodes";
   EXPECT_EQ(stats[0].substr(0, columns.size()), columns);
   for (const std::string& row : stats) EXPECT_EQ(fields_of(row).size(), fields_of(stats[0]).size());
   const Names last = fields_of(stats[18]);
@@ -50,8 +57,9 @@ TEST(Run, WritesTheFilesAndColumnsThatAreDocumented) {
 TEST(Run, DoesWhatItsOptionsSay) {
   const WorkFolder folder;
   folder.file("small.toml", small_scene());
-  const ProgramEnd end = taut(folder, {"run", "small.toml", "--no-picture", "--out", "here", "--frames", "2", "--solver", "mpcg", "--set",
-                                       "cloth.k_stretch=50", "--threads", "1", "--quiet", "--no-picture"});
+  const ProgramEnd end = taut(
+      folder, {"run", "small.toml", "--no-picture", "--out", "here", "--frames", "2", "--solver",
+               "mpcg", "--set", "cloth.k_stretch=50", "--threads", "1", "--quiet", "--no-picture"});
   ASSERT_EQ(end.exit_code, 0) << end.err;
   EXPECT_EQ(end.out + end.err, "");
   const Names stats = lines_of(read_text(folder / "here/stats.csv"));
@@ -59,18 +67,26 @@ TEST(Run, DoesWhatItsOptionsSay) {
   EXPECT_EQ(fields_of(stats[1])[7], "mpcg");
   EXPECT_NE(read_text(folder / "here/scene.toml").find("k_stretch = 50"), std::string::npos);
 
-  const ProgramEnd lines = taut(folder, {"run", "small.toml", "--frames", "1", "--no-picture", "--json-lines"});
+  const ProgramEnd lines =
+      taut(folder, {"run", "small.toml", "--frames", "1", "--no-picture", "--json-lines"});
   ASSERT_EQ(lines.exit_code, 0) << lines.err;
   int steps = 0;
-  for (const std::string& line : lines_of(lines.out)) EXPECT_EQ(nlohmann::json::parse(line).at("step"), ++steps);
+  for (const std::string& line : lines_of(lines.out))
+    EXPECT_EQ(nlohmann::json::parse(line).at("step"), ++steps);
   EXPECT_EQ(steps, 3);
 }
 
 TEST(Run, SceneItWroteRunsToTheSameBits) {
   const WorkFolder folder;
   folder.file("small.toml", small_scene());
-  ASSERT_EQ(taut(folder, {"run", "small.toml", "--out", "a", "--quiet", "--no-picture", "--threads", "1"}).exit_code, 0);
-  ASSERT_EQ(taut(folder, {"run", "a/scene.toml", "--out", "b", "--quiet", "--no-picture", "--threads", "2"}).exit_code, 0);
+  ASSERT_EQ(
+      taut(folder, {"run", "small.toml", "--out", "a", "--quiet", "--no-picture", "--threads", "1"})
+          .exit_code,
+      0);
+  ASSERT_EQ(taut(folder,
+                 {"run", "a/scene.toml", "--out", "b", "--quiet", "--no-picture", "--threads", "2"})
+                .exit_code,
+            0);
   EXPECT_EQ(read_text(folder / "a/frames/000006.npy"), read_text(folder / "b/frames/000006.npy"));
 }
 
@@ -99,7 +115,8 @@ TEST(Run, LeavesFoldersOfOthersAlone) {
   EXPECT_EQ(names_in(folder / "mine"), Names{"thesis.txt"});
 }
 
-// Long enough to be caught in the middle, three steps a frame; the first one made runs to its end without a break.
+// Long enough to be caught in the middle, three steps a frame; the first one made runs to its end
+// without a break.
 class Interrupted : public testing::Test {
  protected:
   static const WorkFolder& folder() {
@@ -118,21 +135,25 @@ class Interrupted : public testing::Test {
   ProgramEnd run_and_signal(int signal) const {
     std::filesystem::remove_all(folder() / "cut");
     const RunningProgram program(folder(), run_into("cut"));
-    EXPECT_TRUE(RunningProgram::wait_until([&] { return std::filesystem::exists(folder() / "cut/frames/000004.npy"); }));
+    EXPECT_TRUE(RunningProgram::wait_until(
+        [&] { return std::filesystem::exists(folder() / "cut/frames/000004.npy"); }));
     program.send(signal);
     const ProgramEnd end = program.wait();
-    EXPECT_FALSE(std::filesystem::exists(folder() / "cut/frames/000120.npy")) << "too fast to be interrupted";
+    EXPECT_FALSE(std::filesystem::exists(folder() / "cut/frames/000120.npy"))
+        << "too fast to be interrupted";
     return end;
   }
   void expect_same_file(const std::string& name) const {
-    EXPECT_EQ(read_text(folder() / ("cut/" + name)), read_text(folder() / ("whole/" + name))) << name;
+    EXPECT_EQ(read_text(folder() / ("cut/" + name)), read_text(folder() / ("whole/" + name)))
+        << name;
   }
   void expect_valid_up_to_here() const {
     const auto summary = nlohmann::json::parse(read_text(folder() / "cut/summary.json"));
     EXPECT_EQ(summary.at("status"), "interrupted");
     int frames = 0;
     for (const std::string& name : names_in(folder() / "cut/frames")) {
-      expect_same_file("frames/" + name);  // an unfinished one, or a temporary file, would have no equal
+      // an unfinished one, or a temporary file, would have no equal
+      expect_same_file("frames/" + name);
       frames += std::isdigit(static_cast<unsigned char>(name[0])) != 0;
     }
     EXPECT_EQ(summary.at("frames"), frames);
@@ -142,8 +163,10 @@ class Interrupted : public testing::Test {
     const ProgramEnd resumed = taut(folder(), {"resume", "cut", "--quiet", "--no-picture"});
     ASSERT_EQ(resumed.exit_code, 0) << resumed.err;
     EXPECT_EQ(names_in(folder() / "cut/frames"), names_in(folder() / "whole/frames"));
-    for (const char* name : {"frames/000119.npy", "frames/000120.npy", "checkpoint/state.bin"}) expect_same_file(name);
-    const Names a = lines_of(read_text(folder() / "cut/stats.csv")), b = lines_of(read_text(folder() / "whole/stats.csv"));
+    for (const char* name : {"frames/000119.npy", "frames/000120.npy", "checkpoint/state.bin"})
+      expect_same_file(name);
+    const Names a = lines_of(read_text(folder() / "cut/stats.csv")),
+                b = lines_of(read_text(folder() / "whole/stats.csv"));
     ASSERT_EQ(a.size(), b.size());
     for (std::size_t row = 1; row < a.size(); ++row)
       for (const int column : {0, 1, 2, 4, 5, 6, 9, 10, 17, 18, 19})
@@ -173,7 +196,10 @@ TEST(Resume, SaysWhatIsMissingOrDamaged) {
   const WorkFolder folder;
   folder.file("small.toml", small_scene());
   EXPECT_EQ(taut(folder, {"resume", "nothing"}).exit_code, 1);
-  ASSERT_EQ(taut(folder, {"run", "small.toml", "--out", "r", "--frames", "1", "--quiet", "--no-picture"}).exit_code, 0);
+  ASSERT_EQ(
+      taut(folder, {"run", "small.toml", "--out", "r", "--frames", "1", "--quiet", "--no-picture"})
+          .exit_code,
+      0);
   std::string state = read_text(folder / "r/checkpoint/state.bin");
   state[state.size() / 2] ^= 1;
   folder.file("r/checkpoint/state.bin", state);

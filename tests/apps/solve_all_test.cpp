@@ -1,4 +1,5 @@
-// taut solve --all: every solver gives the same answer, on cloth and on other people's matrices, or says that it has none.
+// taut solve --all: every solver gives the same answer, on cloth and on other people's matrices, or
+// says that it has none.
 
 #include <gtest/gtest.h>
 
@@ -17,13 +18,14 @@ using Names = std::vector<std::string>;
 Json rows_of(const std::string& report) { return Json::parse(report).at("rows"); }
 
 // All solvers on a dump of one step: converged, A-norm error below 1e-6 at tolerance 1e-9.
-void expect_one_answer(const WorkFolder& folder, const std::string& scene, const Names& settings, const char* step, int pinned_dofs,
-                       bool in_contact) {
+void expect_one_answer(const WorkFolder& folder, const std::string& scene, const Names& settings,
+                       const char* step, int pinned_dofs, bool in_contact) {
   Names dump{"dump", scene, "--step", step, "--out", "d", "--quiet"};
   for (const std::string& setting : settings) dump.insert(dump.end(), {"--set", setting});
   const ProgramEnd dumped = taut(folder, dump);
   ASSERT_EQ(dumped.exit_code, 0) << dumped.err;
-  const ProgramEnd end = taut(folder, {"solve", "d", "--all", "--tolerance", "1e-9", "--repeat", "1", "--json"});
+  const ProgramEnd end =
+      taut(folder, {"solve", "d", "--all", "--tolerance", "1e-9", "--repeat", "1", "--json"});
   EXPECT_EQ(end.exit_code, 0) << end.err;
   const Json rows = Json::parse(end.out).at("rows");
   EXPECT_GE(rows.size(), 20u);
@@ -39,22 +41,34 @@ void expect_one_answer(const WorkFolder& folder, const std::string& scene, const
   EXPECT_EQ(constrained > pinned_dofs, in_contact) << scene;
 }
 
-std::string scene_file(const char* name) { return std::string(TAUT_SOURCE_DIR) + "/scenes/" + name; }
+std::string scene_file(const char* name) {
+  return std::string(TAUT_SOURCE_DIR) + "/scenes/" + name;
+}
 
-TEST(SolveAll, Pinned) { expect_one_answer(WorkFolder(), scene_file("pinned.toml"), {"cloth.grid.nodes=[13,13]"}, "40", 12, false); }
-TEST(SolveAll, Drape) { expect_one_answer(WorkFolder(), scene_file("drape.toml"), {"cloth.grid.nodes=[17,17]"}, "60", 0, true); }
-TEST(SolveAll, Ball) { expect_one_answer(WorkFolder(), scene_file("ball.toml"), {"cloth.grid.nodes=[17,17]"}, "30", 6, true); }
+TEST(SolveAll, Pinned) {
+  expect_one_answer(WorkFolder(), scene_file("pinned.toml"), {"cloth.grid.nodes=[13,13]"}, "40", 12,
+                    false);
+}
+TEST(SolveAll, Drape) {
+  expect_one_answer(WorkFolder(), scene_file("drape.toml"), {"cloth.grid.nodes=[17,17]"}, "60", 0,
+                    true);
+}
+TEST(SolveAll, Ball) {
+  expect_one_answer(WorkFolder(), scene_file("ball.toml"), {"cloth.grid.nodes=[17,17]"}, "30", 6,
+                    true);
+}
 
 TEST(SolveAll, TShirt) {
   const auto data = data_folder();
   if (!data) GTEST_SKIP() << "no data folder: set TAUT_DATA";
   const WorkFolder folder;
-  folder.file(
-      "tshirt.toml",
-      "title = \"T-shirt on a ball\"\n[time]\nstep = 4e-3\nframes = 20\nsteps_per_frame = 5\n[[cloth]]\nname = \"tshirt\"\nmesh = \"" +
-          (*data / "tshirt/tshirt.obj").string() +
-          "\"\nscale = 0.01\nup = \"y\"\ndensity = 0.2\nk_stretch = 2000\nk_bend = 0.01\n[[solid]]\nshape = \"sphere\"\nradius = 0.6\n"
-          "translation = [0, 0.04, 0.43]\nfriction = 0.3\n");
+  folder.file("tshirt.toml",
+              "title = \"T-shirt on a ball\"\n[time]\nstep = 4e-3\nframes = 20\nsteps_per_frame = "
+              "5\n[[cloth]]\nname = \"tshirt\"\nmesh = \"" +
+                  (*data / "tshirt/tshirt.obj").string() +
+                  "\"\nscale = 0.01\nup = \"y\"\ndensity = 0.2\nk_stretch = 2000\nk_bend = "
+                  "0.01\n[[solid]]\nshape = \"sphere\"\nradius = 0.6\n"
+                  "translation = [0, 0.04, 0.43]\nfriction = 0.3\n");
   expect_one_answer(folder, "tshirt.toml", {}, "16", 0, true);
 }
 
@@ -64,8 +78,9 @@ TEST_P(OthersMatrices, ResidualOrAnHonestNo) {
   const auto data = data_folder();
   if (!data) GTEST_SKIP() << "no data folder: set TAUT_DATA";
   const WorkFolder folder;
-  const ProgramEnd end = taut(folder, {"solve", "--matrix", (*data / "matrices" / GetParam()).string(), "--all", "--tolerance", "1e-9",
-                                       "--time-limit", "10", "--repeat", "1", "--json"});
+  const ProgramEnd end =
+      taut(folder, {"solve", "--matrix", (*data / "matrices" / GetParam()).string(), "--all",
+                    "--tolerance", "1e-9", "--time-limit", "10", "--repeat", "1", "--json"});
   bool all_converged = true;
   int converged = 0;
   for (const Json& row : rows_of(end.out)) {
@@ -93,9 +108,12 @@ TEST_P(OthersMatrices, ResidualOrAnHonestNo) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Matrices, OthersMatrices,
-                         ::testing::Values("1138_bus.mtx", "LFAT5.mtx", "ani1.mtx", "isai_spd.mtx", "bcsstk13.mtx.gz"),
+                         ::testing::Values("1138_bus.mtx", "LFAT5.mtx", "ani1.mtx", "isai_spd.mtx",
+                                           "bcsstk13.mtx.gz"),
                          [](const auto& tested) {
-                           return std::string(tested.param).substr(0, std::string(tested.param).find('.')).insert(0, "m");
+                           return std::string(tested.param)
+                               .substr(0, std::string(tested.param).find('.'))
+                               .insert(0, "m");
                          });
 
 struct Refused {
@@ -106,38 +124,57 @@ struct Refused {
 };
 
 TEST(SolveRefusal, SaysWhatWasFoundWhere) {
-  const std::string coordinate = "%%MatrixMarket matrix coordinate real ", array = "%%MatrixMarket matrix array real general\n";
+  const std::string coordinate = "%%MatrixMarket matrix coordinate real ",
+                    array = "%%MatrixMarket matrix array real general\n";
   const Refused cases[] = {
-      {"not symmetric", "general\n2 2 4\n1 1 2\n1 2 -1\n2 1 -0.5\n2 2 2\n", "", {"(1, 2)", "-0.5", "symmetric"}},
+      {"not symmetric",
+       "general\n2 2 4\n1 1 2\n1 2 -1\n2 1 -0.5\n2 2 2\n",
+       "",
+       {"(1, 2)", "-0.5", "symmetric"}},
       {"not square", "general\n2 3 2\n1 1 1\n2 2 1\n", "", {"2 rows and 3 columns", "square"}},
       {"NaN in the matrix", "symmetric\n2 2 2\n1 1 1\n2 2 nan\n", "", {"A.mtx:4", "nan"}},
       {"infinity in the matrix", "symmetric\n2 2 2\n1 1 inf\n2 2 1\n", "", {"A.mtx:3", "inf"}},
       {"empty row", "symmetric\n3 3 2\n1 1 1\n3 3 1\n", "", {"(2, 2)", "zero or missing"}},
-      {"short right-hand side", "symmetric\n2 2 2\n1 1 1\n2 2 1\n", "3 1\n1\n1\n1\n", {"b.mtx", "3 rows", "2 rows"}},
-      {"two right-hand sides", "symmetric\n2 2 2\n1 1 1\n2 2 1\n", "2 2\n1\n1\n1\n1\n", {"b.mtx", "2 columns", "1 column"}},
-      {"NaN in the right-hand side", "symmetric\n2 2 2\n1 1 1\n2 2 1\n", "2 1\n1\nnan\n", {"b.mtx:4", "nan"}},
+      {"short right-hand side",
+       "symmetric\n2 2 2\n1 1 1\n2 2 1\n",
+       "3 1\n1\n1\n1\n",
+       {"b.mtx", "3 rows", "2 rows"}},
+      {"two right-hand sides",
+       "symmetric\n2 2 2\n1 1 1\n2 2 1\n",
+       "2 2\n1\n1\n1\n1\n",
+       {"b.mtx", "2 columns", "1 column"}},
+      {"NaN in the right-hand side",
+       "symmetric\n2 2 2\n1 1 1\n2 2 1\n",
+       "2 1\n1\nnan\n",
+       {"b.mtx:4", "nan"}},
   };
   for (const Refused& refused : cases) {
     const WorkFolder folder;
     folder.file("A.mtx", coordinate + refused.matrix);
     Names arguments{"solve", "--matrix", "A.mtx", "--all"};
-    if (*refused.rhs) folder.file("b.mtx", array + refused.rhs), arguments.insert(arguments.end(), {"--rhs", "b.mtx"});
+    if (*refused.rhs)
+      folder.file("b.mtx", array + refused.rhs),
+          arguments.insert(arguments.end(), {"--rhs", "b.mtx"});
     const ProgramEnd end = taut(folder, arguments);
     EXPECT_EQ(end.exit_code, 1) << refused.what;
     EXPECT_EQ(end.out, "") << refused.what;
-    for (const std::string& said : refused.said) EXPECT_NE(end.err.find(said), std::string::npos) << refused.what << ": " << end.err;
+    for (const std::string& said : refused.said)
+      EXPECT_NE(end.err.find(said), std::string::npos) << refused.what << ": " << end.err;
   }
 }
 
-// A free chain of springs: constant vectors are its null space, and this b is not orthogonal to them, so there is no solution.
+// A free chain of springs: constant vectors are its null space, and this b is not orthogonal to
+// them, so there is no solution.
 TEST(SolveRefusal, SingularIsReportedByEverySolver) {
   const WorkFolder folder;
   std::string matrix = "%%MatrixMarket matrix coordinate real symmetric\n6 6 11\n";
-  for (int i = 1; i <= 6; ++i) matrix += std::to_string(i) + " " + std::to_string(i) + (i == 1 || i == 6 ? " 1\n" : " 2\n");
+  for (int i = 1; i <= 6; ++i)
+    matrix += std::to_string(i) + " " + std::to_string(i) + (i == 1 || i == 6 ? " 1\n" : " 2\n");
   for (int i = 1; i < 6; ++i) matrix += std::to_string(i + 1) + " " + std::to_string(i) + " -1\n";
   folder.file("A.mtx", matrix);
   folder.file("b.mtx", "%%MatrixMarket matrix array real general\n6 1\n1\n1\n1\n1\n1\n2\n");
-  const ProgramEnd end = taut(folder, {"solve", "--matrix", "A.mtx", "--rhs", "b.mtx", "--all", "--json"});
+  const ProgramEnd end =
+      taut(folder, {"solve", "--matrix", "A.mtx", "--rhs", "b.mtx", "--all", "--json"});
   EXPECT_EQ(end.exit_code, 1);
   for (const Json& row : rows_of(end.out)) {
     EXPECT_NE(row.at("status"), "converged") << row.dump();
@@ -148,12 +185,15 @@ TEST(SolveRefusal, SingularIsReportedByEverySolver) {
 // Symmetric, its diagonal positive, but with eigenvalues 1 +- 2.
 TEST(SolveRefusal, IndefiniteIsReportedByEverySolverThatNeedsDefiniteness) {
   const WorkFolder folder;
-  folder.file("A.mtx", "%%MatrixMarket matrix coordinate real symmetric\n2 2 3\n1 1 1\n2 1 2\n2 2 1\n");
+  folder.file("A.mtx",
+              "%%MatrixMarket matrix coordinate real symmetric\n2 2 3\n1 1 1\n2 1 2\n2 2 1\n");
   folder.file("b.mtx", "%%MatrixMarket matrix array real general\n2 1\n1\n-1\n");
-  const ProgramEnd end = taut(folder, {"solve", "--matrix", "A.mtx", "--rhs", "b.mtx", "--all", "--json"});
+  const ProgramEnd end =
+      taut(folder, {"solve", "--matrix", "A.mtx", "--rhs", "b.mtx", "--all", "--json"});
   EXPECT_EQ(end.exit_code, 1);
   for (const Json& row : rows_of(end.out)) {
-    if (row.at("solver").get<std::string>().starts_with("eq10")) continue;  // BiCGSTAB asks for no definiteness
+    // BiCGSTAB asks for no definiteness
+    if (row.at("solver").get<std::string>().starts_with("eq10")) continue;
     EXPECT_NE(row.at("status"), "converged") << row.dump();
     EXPECT_NE(row.value("message", ""), "") << row.dump();
   }
@@ -162,7 +202,8 @@ TEST(SolveRefusal, IndefiniteIsReportedByEverySolverThatNeedsDefiniteness) {
 TEST(SolveOptions, ResidualIsReachedWhereItIsAskedFor) {
   const WorkFolder folder;
   folder.file("small.toml", small_scene());
-  ASSERT_EQ(taut(folder, {"dump", "small.toml", "--step", "15", "--out", "d", "--quiet"}).exit_code, 0);
+  ASSERT_EQ(taut(folder, {"dump", "small.toml", "--step", "15", "--out", "d", "--quiet"}).exit_code,
+            0);
   const auto row = [&](const Names& more) {
     Names arguments{"solve", "d", "--solver", "upcg:amg", "--tolerance", "1e-2", "--json"};
     arguments.insert(arguments.end(), more.begin(), more.end());
@@ -181,7 +222,9 @@ TEST(SolveOptions, ResidualIsReachedWhereItIsAskedFor) {
 
 TEST(SolveOptions, ShortSolvesAreMediansOfFive) {
   const WorkFolder folder;
-  folder.file("A.mtx", "%%MatrixMarket matrix coordinate real symmetric\n3 3 5\n1 1 4\n2 1 -1\n2 2 4\n3 2 -1\n3 3 4\n");
+  folder.file("A.mtx",
+              "%%MatrixMarket matrix coordinate real symmetric\n3 3 5\n1 1 4\n2 1 -1\n2 2 4\n3 2 "
+              "-1\n3 3 4\n");
   const auto solves = [&](const Names& more) {
     Names arguments{"solve", "--matrix", "A.mtx", "--solver", "mpcg", "--json"};
     arguments.insert(arguments.end(), more.begin(), more.end());
@@ -189,15 +232,17 @@ TEST(SolveOptions, ShortSolvesAreMediansOfFive) {
   };
   EXPECT_EQ(solves({}), 5);
   EXPECT_EQ(solves({"--repeat", "9"}), 9);
-  EXPECT_NE(taut(folder, {"solve", "--matrix", "A.mtx", "--solver", "mpcg"}).out.find("solves"), std::string::npos);
+  EXPECT_NE(taut(folder, {"solve", "--matrix", "A.mtx", "--solver", "mpcg"}).out.find("solves"),
+            std::string::npos);
 }
 
 TEST(SolveOptions, TimeLimitEndsASlowMethod) {
   const auto data = data_folder();
   if (!data) GTEST_SKIP() << "no data folder: set TAUT_DATA";
   const WorkFolder folder;
-  const ProgramEnd end = taut(folder, {"solve", "--matrix", (*data / "matrices/bcsstk13.mtx.gz").string(), "--solver", "mpcg",
-                                       "--tolerance", "1e-12", "--time-limit", "0.05", "--json"});
+  const ProgramEnd end =
+      taut(folder, {"solve", "--matrix", (*data / "matrices/bcsstk13.mtx.gz").string(), "--solver",
+                    "mpcg", "--tolerance", "1e-12", "--time-limit", "0.05", "--json"});
   EXPECT_EQ(end.exit_code, 1);
   const Json row = Json::parse(end.out).at("rows").at(0);
   EXPECT_EQ(row.at("status"), "max_iterations");
@@ -208,11 +253,14 @@ TEST(SolveOptions, TimeLimitEndsASlowMethod) {
 TEST(SolveOptions, PlotHasACurveAMethod) {
   const WorkFolder folder;
   folder.file("small.toml", small_scene());
-  ASSERT_EQ(taut(folder, {"dump", "small.toml", "--step", "15", "--out", "d", "--quiet"}).exit_code, 0);
-  const ProgramEnd end = taut(folder, {"solve", "d", "--solver", "mpcg,core_pcg,eigen_ldlt", "--plot", "p.svg", "--json", "s.json"});
+  ASSERT_EQ(taut(folder, {"dump", "small.toml", "--step", "15", "--out", "d", "--quiet"}).exit_code,
+            0);
+  const ProgramEnd end = taut(folder, {"solve", "d", "--solver", "mpcg,core_pcg,eigen_ldlt",
+                                       "--plot", "p.svg", "--json", "s.json"});
   ASSERT_EQ(end.exit_code, 0) << end.err;
   const std::string svg = read_text(folder / "p.svg");
-  for (const char* text : {">mpcg<", ">core_pcg<", ">eigen_ldlt<", ">time, ms<"}) EXPECT_NE(svg.find(text), std::string::npos) << text;
+  for (const char* text : {">mpcg<", ">core_pcg<", ">eigen_ldlt<", ">time, ms<"})
+    EXPECT_NE(svg.find(text), std::string::npos) << text;
   EXPECT_EQ(taut(folder, {"plot", "s.json", "--out", "q.svg"}).exit_code, 0);
   // Refused before anything is solved.
   const ProgramEnd refused = taut(folder, {"solve", "d", "--all", "--plot", "p.pdf"});

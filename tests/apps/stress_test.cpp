@@ -32,7 +32,8 @@ density = 0.15
 }
 
 ProgramEnd stress(const WorkFolder& folder, const std::vector<std::string>& more) {
-  std::vector<std::string> arguments{"bench", "contact", "--stress", "1", "--scene", "clump", "--frames", "2", "--scenes", "."};
+  std::vector<std::string> arguments{"bench", "contact",  "--stress", "1",        "--scene",
+                                     "clump", "--frames", "2",        "--scenes", "."};
   arguments.insert(arguments.end(), more.begin(), more.end());
   return taut(folder, arguments);
 }
@@ -58,15 +59,18 @@ TEST(StressVerb, AnIntersectionIsAFailure) {
 TEST(StressVerb, TheJudgeSeesEveryFrameAndIsBelieved) {
   const WorkFolder folder;
   folder.file("clump.toml", sheets(false));
-  const std::string content = script(folder, "content.sh", "echo \"$1 $2\" >> asked.txt; test -s \"$3\"");
+  const std::string content =
+      script(folder, "content.sh", "echo \"$1 $2\" >> asked.txt; test -s \"$3\"");
   EXPECT_EQ(stress(folder, {"--judge", content}).exit_code, 0);
   EXPECT_EQ(read_text(folder / "asked.txt"),
-            "--solid-from 25\n--solid-from 25\n--solid-from 25\n--solid-from 25\n--solid-from 25\n--solid-from 25\n")
+            "--solid-from 25\n--solid-from 25\n--solid-from 25\n--solid-from 25\n--solid-from "
+            "25\n--solid-from 25\n")
       << "the start and two frames of each of two runs";
   const ProgramEnd severe = stress(folder, {"--judge", script(folder, "severe.sh", "exit 1")});
   EXPECT_EQ(severe.exit_code, 1);
   EXPECT_NE(severe.out.find("judged: 3 of 3 frames intersecting"), std::string::npos) << severe.out;
-  const ProgramEnd broken = stress(folder, {"--judge", script(folder, "broken.sh", "echo cannot read >&2; exit 3")});
+  const ProgramEnd broken =
+      stress(folder, {"--judge", script(folder, "broken.sh", "echo cannot read >&2; exit 3")});
   EXPECT_NE(broken.exit_code, 0);
   EXPECT_NE(broken.err.find("cannot read"), std::string::npos) << broken.err;
   const ProgramEnd nobody = stress(folder, {"--judge", "./nobody"});

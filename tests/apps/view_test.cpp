@@ -36,7 +36,9 @@ class Viewer {
     program_.send(SIGINT);
     EXPECT_EQ(program_.wait().exit_code, 0);
   }
-  Reply get(const std::string& name) const { return send_raw(port, request_text(port, base + name)); }
+  Reply get(const std::string& name) const {
+    return send_raw(port, request_text(port, base + name));
+  }
   Json json(const std::string& name) const {
     const Reply reply = get(name);
     EXPECT_EQ(reply.status, 200) << name << ": " << reply.body;
@@ -48,7 +50,8 @@ class Viewer {
   std::string base;  // "/KEY/"
 
  private:
-  static RunningProgram start(const WorkFolder& folder, const std::string& result, std::vector<std::string> options) {
+  static RunningProgram start(const WorkFolder& folder, const std::string& result,
+                              std::vector<std::string> options) {
     std::filesystem::create_directories(folder / "page/assets");
     folder.file("page/index.html", "<!doctype html>the page");
     folder.file("page/assets/index.js", "let page;");
@@ -63,13 +66,15 @@ class Viewer {
 void run_small(const WorkFolder& folder, const std::string& out) {
   folder.file("small.toml", small_scene());
   folder.file("secret.txt", secret);
-  ASSERT_EQ(taut(folder, {"run", "small.toml", "--out", out, "--quiet", "--no-picture"}).exit_code, 0);
+  ASSERT_EQ(taut(folder, {"run", "small.toml", "--out", out, "--quiet", "--no-picture"}).exit_code,
+            0);
 }
 
 // The numbers of a .npy file of version 1.0.
 std::string npy_numbers(const std::filesystem::path& path) {
   const std::string bytes = read_text(path);
-  return bytes.substr(10 + static_cast<unsigned char>(bytes[8]) + 256u * static_cast<unsigned char>(bytes[9]));
+  return bytes.substr(10 + static_cast<unsigned char>(bytes[8]) +
+                      256u * static_cast<unsigned char>(bytes[9]));
 }
 
 template <class T>
@@ -101,14 +106,16 @@ TEST(View, ServesAFinishedRun) {
   EXPECT_EQ(scene.at("note"), "");
 
   std::string all;
-  for (int f = 0; f <= 6; ++f) all += npy_numbers(folder / ("r/frames/00000" + std::to_string(f) + ".npy"));
+  for (int f = 0; f <= 6; ++f)
+    all += npy_numbers(folder / ("r/frames/00000" + std::to_string(f) + ".npy"));
   const std::size_t frame = 72 * 3 * 4;
   EXPECT_EQ(viewer.get("api/frames?first=0&count=7").body, all);
   EXPECT_EQ(viewer.get("api/frames?first=2&count=3").body, all.substr(2 * frame, 3 * frame));
   EXPECT_EQ(viewer.get("api/frames?first=5&count=100").body, all.substr(5 * frame));
   EXPECT_EQ(viewer.get("api/frames?first=7&count=1").status, 404);
   std::string contact;
-  for (int f = 0; f <= 6; ++f) contact += npy_numbers(folder / ("r/frames/contact_00000" + std::to_string(f) + ".npy"));
+  for (int f = 0; f <= 6; ++f)
+    contact += npy_numbers(folder / ("r/frames/contact_00000" + std::to_string(f) + ".npy"));
   EXPECT_EQ(contact.size(), 7u * 72);
   EXPECT_EQ(scene.at("contact"), true);
   EXPECT_EQ(viewer.get("api/contact?first=0&count=7").body, contact);
@@ -131,20 +138,25 @@ TEST(View, ServesAFinishedRun) {
 TEST(View, PosesOfAMovingSolidFollowItsFrames) {
   const WorkFolder folder;
   folder.file("small.toml", std::string(small_scene()) + "velocity = [0, 2, 0]\n");
-  ASSERT_EQ(taut(folder, {"run", "small.toml", "--out", "r", "--quiet", "--no-picture"}).exit_code, 0);
+  ASSERT_EQ(taut(folder, {"run", "small.toml", "--out", "r", "--quiet", "--no-picture"}).exit_code,
+            0);
   const Viewer viewer(folder, "r");
   const Json scene = viewer.json("api/scene"), poses = scene.at("solids").at(0).at("poses");
   ASSERT_EQ(poses.size(), 7u);
-  for (int f = 0; f <= 6; ++f) EXPECT_NEAR(poses.at(static_cast<std::size_t>(f)).at(1).get<double>(), 2 * 0.015 * f, 1e-7);
+  for (int f = 0; f <= 6; ++f)
+    EXPECT_NEAR(poses.at(static_cast<std::size_t>(f)).at(1).get<double>(), 2 * 0.015 * f, 1e-7);
 }
 
 // A tetrahedron that flies by: its corners at each frame, those that no triangle uses left out.
 TEST(View, SolidsThatAreMeshesAreServedFrameByFrame) {
   const WorkFolder folder;
-  folder.file("tetra.obj", "v 3 0 0\nv 4 0 0\nv 3 1 0\nv 3 0 1\nv 9 9 9\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
-  folder.file("small.toml",
-              std::string(small_scene()) + "[[solid]]\nname = \"flier\"\nshape = \"mesh\"\nmesh = \"tetra.obj\"\nvelocity = [0, 2, 0]\n");
-  const ProgramEnd run = taut(folder, {"run", "small.toml", "--out", "r", "--quiet", "--no-picture"});
+  folder.file("tetra.obj",
+              "v 3 0 0\nv 4 0 0\nv 3 1 0\nv 3 0 1\nv 9 9 9\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+  folder.file("small.toml", std::string(small_scene()) +
+                                "[[solid]]\nname = \"flier\"\nshape = \"mesh\"\nmesh = "
+                                "\"tetra.obj\"\nvelocity = [0, 2, 0]\n");
+  const ProgramEnd run =
+      taut(folder, {"run", "small.toml", "--out", "r", "--quiet", "--no-picture"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const Viewer viewer(folder, "r");
   EXPECT_EQ(viewer.json("api/scene").at("solids").at(1).at("shape"), "mesh");
@@ -156,7 +168,9 @@ TEST(View, SolidsThatAreMeshesAreServedFrameByFrame) {
   for (std::size_t f = 0; f < 7; ++f)
     for (std::size_t v = 0; v < 4; ++v)
       for (std::size_t i = 0; i < 3; ++i)
-        EXPECT_NEAR(points[(f * 4 + v) * 3 + i], corners[v][i] + (i == 1 ? 2 * 0.015 * static_cast<double>(f) : 0.0), 1e-6) << f;
+        EXPECT_NEAR(points[(f * 4 + v) * 3 + i],
+                    corners[v][i] + (i == 1 ? 2 * 0.015 * static_cast<double>(f) : 0.0), 1e-6)
+            << f;
   EXPECT_EQ(viewer.get("api/solid_points?solid=0").status, 404);  // a sphere
   EXPECT_EQ(viewer.get("api/solid_points?solid=../1").status, 400);
 }
@@ -186,10 +200,12 @@ TEST(View, ServesThePageWithAStrictPolicy) {
   EXPECT_EQ(page.status, 200);
   EXPECT_EQ(page.body, "<!doctype html>the page");
   EXPECT_EQ(page.headers.at("content-type"), "text/html; charset=utf-8");
-  EXPECT_TRUE(page.headers.at("content-security-policy").starts_with("default-src 'none'; script-src 'self';"));
+  EXPECT_TRUE(page.headers.at("content-security-policy")
+                  .starts_with("default-src 'none'; script-src 'self';"));
   EXPECT_EQ(page.headers.at("x-content-type-options"), "nosniff");
   EXPECT_EQ(page.headers.count("access-control-allow-origin"), 0u);
-  EXPECT_EQ(viewer.get("assets/index.js").headers.at("content-type"), "text/javascript; charset=utf-8");
+  EXPECT_EQ(viewer.get("assets/index.js").headers.at("content-type"),
+            "text/javascript; charset=utf-8");
   EXPECT_EQ(viewer.get("assets/other.js").status, 404);
   const Reply head = send_raw(viewer.port, request_text(viewer.port, viewer.base, "HEAD"));
   EXPECT_EQ(head.status, 200);
@@ -235,12 +251,14 @@ TEST(View, RefusesPathTricks) {
                                     b + std::string(20000, 'a'),
                                     std::string("/00000000000000000000000000000000/api/state")}) {
     const Reply reply = send_raw(viewer.port, request_text(viewer.port, target));
-    EXPECT_TRUE(reply.status >= 400 && reply.status < 500) << target.substr(0, 100) << ": " << reply.status;
+    EXPECT_TRUE(reply.status >= 400 && reply.status < 500)
+        << target.substr(0, 100) << ": " << reply.status;
     EXPECT_EQ(reply.body.find(secret), std::string::npos) << target;
     EXPECT_EQ(reply.body.find("root:"), std::string::npos) << target;
   }
   for (const std::string& rubbish :
-       {std::string("\r\n\r\n"), std::string("GET\r\n\r\n"), std::string("\0\0\0\0\r\n\r\n", 8), "GET " + b + " HTTP/9.9\r\n\r\n"})
+       {std::string("\r\n\r\n"), std::string("GET\r\n\r\n"), std::string("\0\0\0\0\r\n\r\n", 8),
+        "GET " + b + " HTTP/9.9\r\n\r\n"})
     EXPECT_NE(send_raw(viewer.port, rubbish, 300).status, 200);
   EXPECT_EQ(viewer.status(), "finished");  // still there
 }
@@ -249,9 +267,12 @@ TEST(View, RefusesOtherHostsAndMethods) {
   const WorkFolder folder;
   run_small(folder, "r");
   const Viewer viewer(folder, "r");
-  const std::string port = std::to_string(viewer.port), line = "GET " + viewer.base + "api/state HTTP/1.1\r\n",
+  const std::string port = std::to_string(viewer.port),
+                    line = "GET " + viewer.base + "api/state HTTP/1.1\r\n",
                     end = "Connection: close\r\n\r\n";
-  const auto with_hosts = [&](const std::string& hosts) { return send_raw(viewer.port, line + hosts + end).status; };
+  const auto with_hosts = [&](const std::string& hosts) {
+    return send_raw(viewer.port, line + hosts + end).status;
+  };
   EXPECT_EQ(with_hosts("Host: 127.0.0.1:" + port + "\r\n"), 200);
   EXPECT_EQ(with_hosts("Host: localhost:" + port + "\r\n"), 200);
   EXPECT_EQ(with_hosts(""), 403);
@@ -260,7 +281,10 @@ TEST(View, RefusesOtherHostsAndMethods) {
   EXPECT_EQ(with_hosts("Host: 127.0.0.1:" + port + ".rebound.example\r\n"), 403);
   EXPECT_EQ(with_hosts("Host: 127.0.0.1:" + port + "\r\nHost: rebound.example\r\n"), 403);
   for (const char* method : {"POST", "PUT", "DELETE", "PATCH", "OPTIONS"})
-    EXPECT_EQ(send_raw(viewer.port, request_text(viewer.port, viewer.base + "api/state", method)).status, 405) << method;
+    EXPECT_EQ(
+        send_raw(viewer.port, request_text(viewer.port, viewer.base + "api/state", method)).status,
+        405)
+        << method;
 }
 
 TEST(View, FollowsNoLinkToAFolder) {
@@ -315,7 +339,8 @@ TEST(View, ListensOnLoopbackOnly) {
   for (const ifaddrs* each = list; each; each = each->ifa_next) {
     if (!each->ifa_addr || each->ifa_addr->sa_family != AF_INET) continue;
     char text[INET_ADDRSTRLEN];
-    ::inet_ntop(AF_INET, &reinterpret_cast<const sockaddr_in*>(each->ifa_addr)->sin_addr, text, sizeof text);
+    ::inet_ntop(AF_INET, &reinterpret_cast<const sockaddr_in*>(each->ifa_addr)->sin_addr, text,
+                sizeof text);
     if (std::string(text) == "127.0.0.1") continue;
     EXPECT_LT(connect_to(text, viewer.port), 0) << text;
   }
@@ -336,7 +361,8 @@ TEST(View, ChangesNothing) {
   const std::string before = facts();
   {
     const Viewer viewer(folder, "r");
-    for (const char* name : {"", "api/state", "api/scene", "api/frames?first=0&count=7", "api/stats?from=0"})
+    for (const char* name :
+         {"", "api/state", "api/scene", "api/frames?first=0&count=7", "api/stats?from=0"})
       EXPECT_EQ(viewer.get(name).status, 200);
   }
   EXPECT_EQ(facts(), before);
@@ -352,13 +378,16 @@ TEST(View, TellsRunningFromKilledFromResumed) {
   std::string first_run;
   int frames = 0;
   {
-    const RunningProgram run(folder, {"run", "small.toml", "--frames", "100000", "--quiet", "--no-picture", "--out", "r"});
-    EXPECT_TRUE(RunningProgram::wait_until([&] { return viewer.json("api/state").at("frames") > 5; }));
+    const RunningProgram run(folder, {"run", "small.toml", "--frames", "100000", "--quiet",
+                                      "--no-picture", "--out", "r"});
+    EXPECT_TRUE(
+        RunningProgram::wait_until([&] { return viewer.json("api/state").at("frames") > 5; }));
     const Json state = viewer.json("api/state");
     EXPECT_EQ(state.at("status"), "running");
     first_run = state.at("run");
     frames = state.at("frames");
-    EXPECT_TRUE(RunningProgram::wait_until([&] { return viewer.json("api/state").at("frames") > frames; }));
+    EXPECT_TRUE(
+        RunningProgram::wait_until([&] { return viewer.json("api/state").at("frames") > frames; }));
     const std::string stats = viewer.get("api/stats?from=0").body;
     EXPECT_EQ(stats.back(), '\n');
     run.send(SIGKILL);
@@ -382,7 +411,8 @@ TEST(View, TellsRunningFromKilledFromResumed) {
     run.wait();
   }
   EXPECT_EQ(viewer.status(), "interrupted");
-  ASSERT_EQ(taut(folder, {"run", "small.toml", "--quiet", "--no-picture", "--out", "r"}).exit_code, 0);
+  ASSERT_EQ(taut(folder, {"run", "small.toml", "--quiet", "--no-picture", "--out", "r"}).exit_code,
+            0);
   const Json anew = viewer.json("api/state");
   EXPECT_EQ(anew.at("status"), "finished");
   EXPECT_EQ(anew.at("frames"), 7);
@@ -396,7 +426,8 @@ TEST(View, SaysWhatIsWrongAtTheStart) {
   EXPECT_EQ(missing.exit_code, 1);
   EXPECT_NE(missing.err.find("nowhere: there is no such folder"), std::string::npos) << missing.err;
   const Viewer viewer(folder, "r");
-  const ProgramEnd taken = taut(folder, {"view", "r", "--no-open", "--port", std::to_string(viewer.port)});
+  const ProgramEnd taken =
+      taut(folder, {"view", "r", "--no-open", "--port", std::to_string(viewer.port)});
   EXPECT_EQ(taken.exit_code, 1);
   EXPECT_NE(taken.err.find("--port"), std::string::npos) << taken.err;
   ::setenv("TAUT_VIEWER", (folder / "r").c_str(), 1);

@@ -47,8 +47,9 @@ TEST(NearestName, SaysNothingAboutADifferentWord) {
 
 TEST(Status, OnlyConvergedIsOkAndEachOutcomeHasItsName) {
   std::set<std::string> names;
-  for (const Outcome outcome : {Outcome::converged, Outcome::max_iterations, Outcome::not_positive_definite, Outcome::not_finite,
-                                Outcome::breakdown, Outcome::out_of_memory}) {
+  for (const Outcome outcome :
+       {Outcome::converged, Outcome::max_iterations, Outcome::not_positive_definite,
+        Outcome::not_finite, Outcome::breakdown, Outcome::out_of_memory}) {
     EXPECT_EQ((Status{outcome, ""}.ok()), outcome == Outcome::converged);
     names.insert(name_of(outcome));
   }

@@ -14,7 +14,8 @@ class FileLock : public testing::Test {
  protected:
   FileLock() { std::ofstream(path_) << "a row\n"; }
   ~FileLock() override { std::filesystem::remove(path_); }
-  const std::filesystem::path path_ = std::filesystem::temp_directory_path() / ("taut_file_lock_" + std::to_string(::getpid()));
+  const std::filesystem::path path_ =
+      std::filesystem::temp_directory_path() / ("taut_file_lock_" + std::to_string(::getpid()));
 };
 
 TEST_F(FileLock, LastsAsLongAsTheFileIsOpen) {
@@ -24,7 +25,8 @@ TEST_F(FileLock, LastsAsLongAsTheFileIsOpen) {
   EXPECT_FALSE(is_being_written(path_));
   mark_as_being_written(file);
   EXPECT_TRUE(is_being_written(path_));
-  EXPECT_TRUE(is_being_written(path_));  // looking, and closing what one looked with, takes nothing away
+  // looking, and closing what one looked with, takes nothing away
+  EXPECT_TRUE(is_being_written(path_));
   std::fclose(file);
   EXPECT_FALSE(is_being_written(path_));
   EXPECT_FALSE(is_being_written(path_.string() + ".absent"));

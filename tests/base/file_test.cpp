@@ -22,7 +22,9 @@ std::string input_error(Action action) {
   return "no error";
 }
 
-bool names(const std::string& message, const std::string& part) { return message.find(part) != std::string::npos; }
+bool names(const std::string& message, const std::string& part) {
+  return message.find(part) != std::string::npos;
+}
 
 TEST(WriteFile, KeepsEveryByteAndMakesTheFolder) {
   const TemporaryFolder folder;
@@ -67,8 +69,9 @@ TEST(WriteFile, WriterThatThrowsLeavesTheOldFileAndNothingElse) {
 TEST(WriteFile, FailedStreamIsReportedAndLeavesTheOldFile) {
   const TemporaryFolder folder;
   const fs::path path = folder.file("f", "old");
-  const std::string message =
-      input_error([&] { write_file(path, [](std::ostream& out) { out << "half", out.setstate(std::ios::badbit); }); });
+  const std::string message = input_error([&] {
+    write_file(path, [](std::ostream& out) { out << "half", out.setstate(std::ios::badbit); });
+  });
   EXPECT_TRUE(names(message, path.string() + ": cannot be written")) << message;
   EXPECT_EQ(read_file(path), "old");
   EXPECT_EQ(folder.entries(), 1u);
@@ -94,10 +97,12 @@ TEST(WriteFile, FolderThatIsAFileIsRefused) {
 TEST(ReadFile, NamesWhatItCannotRead) {
   const TemporaryFolder folder;
   const std::string missing = input_error([&] { read_file(folder / "none"); });
-  EXPECT_TRUE(names(missing, (folder / "none").string()) && names(missing, "there is no such file")) << missing;
+  EXPECT_TRUE(names(missing, (folder / "none").string()) && names(missing, "there is no such file"))
+      << missing;
   folder.file("scene.toml", "");
   const std::string misspelt = input_error([&] { read_file(folder / "scen.toml"); });
-  EXPECT_TRUE(names(misspelt, "did you mean '" + (folder / "scene.toml").string() + "'")) << misspelt;
+  EXPECT_TRUE(names(misspelt, "did you mean '" + (folder / "scene.toml").string() + "'"))
+      << misspelt;
   const std::string nowhere = input_error([&] { read_file(folder / "no/scene.toml"); });
   EXPECT_TRUE(names(nowhere, "there is no folder '" + (folder / "no").string() + "'")) << nowhere;
   const std::string is_folder = input_error([&] { read_file(folder / ""); });

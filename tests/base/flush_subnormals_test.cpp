@@ -11,7 +11,8 @@
 namespace taut::test {
 namespace {
 
-// Half of the smallest normal number: zero where subnormal ones are flushed. Volatile: computed here and now.
+// Half of the smallest normal number: zero where subnormal ones are flushed. Volatile: computed
+// here and now.
 bool are_flushed() {
   volatile float smallest = std::numeric_limits<float>::min(), half = 0.5f;
   const volatile float product = smallest * half;
@@ -59,7 +60,8 @@ TEST(FlushSubnormals, HoldsInATaskAfterALoopWithin) {
       held[t] = are_flushed();
     });
     EXPECT_EQ(held, std::vector<int>(5, 1)) << threads << " threads";
-    for (const auto& of : held_in_loop) EXPECT_EQ(of, std::vector<int>(1000, 1)) << threads << " threads";
+    for (const auto& of : held_in_loop)
+      EXPECT_EQ(of, std::vector<int>(1000, 1)) << threads << " threads";
     EXPECT_FALSE(are_flushed()) << threads << " threads";
   }
   set_thread_count(before);

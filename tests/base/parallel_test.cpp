@@ -69,7 +69,8 @@ TEST_F(Parallel, OrderedSumIsDeterministicInTheNumberOfThreads) {
     for (const int threads : {2, 3, 4}) {
       set_thread_count(threads);
       for (int repeat = 0; repeat < 5; ++repeat)
-        EXPECT_EQ(std::bit_cast<std::uint64_t>(sum_of_terms(n)), std::bit_cast<std::uint64_t>(expected))
+        EXPECT_EQ(std::bit_cast<std::uint64_t>(sum_of_terms(n)),
+                  std::bit_cast<std::uint64_t>(expected))
             << n << " terms, " << threads << " threads";
     }
   }
@@ -78,7 +79,8 @@ TEST_F(Parallel, OrderedSumIsDeterministicInTheNumberOfThreads) {
 TEST_F(Parallel, OrderedSumIsTheSum) {
   set_thread_count(3);
   const auto count = [](Index begin, Index end) {
-    return static_cast<long long>(end) * (end - 1) / 2 - static_cast<long long>(begin) * (begin - 1) / 2;
+    return static_cast<long long>(end) * (end - 1) / 2 -
+           static_cast<long long>(begin) * (begin - 1) / 2;
   };
   for (const Index n : {0, 1, 2047, 2048, 2049, 100'000})
     EXPECT_EQ(ordered_sum<long long>(n, count), static_cast<long long>(n) * (n - 1) / 2) << n;
@@ -88,7 +90,8 @@ TEST_F(Parallel, NestedLoopsAndSumsAreDeterministic) {
   const auto nested = [] {
     std::vector<double> rows(40);
     parallel_for(40, 1, [&](Index begin, Index end) {
-      for (Index i = begin; i < end; ++i) rows[static_cast<std::size_t>(i)] = sum_of_terms(10'000 + 97 * i);
+      for (Index i = begin; i < end; ++i)
+        rows[static_cast<std::size_t>(i)] = sum_of_terms(10'000 + 97 * i);
     });
     return rows;
   };

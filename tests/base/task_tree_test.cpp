@@ -15,8 +15,14 @@ class TasksInParallel : public testing::Test {
  protected:
   ~TasksInParallel() override { set_thread_count(before_); }
   const int before_ = thread_count();
-  const std::vector<std::vector<Index>> parents_ = {{}, {-1}, {-1, -1, -1}, {1, 2, 3, -1}, {2, 2, 6, 5, 5, 6, -1}, {4, 4, 4, 4, -1, 6, -1},
-                                                   {4, 4, 4, 4, 16, 7, 7, 16, 14, 14, 13, 13, 13, 14, 16, 16, -1}};
+  const std::vector<std::vector<Index>> parents_ = {
+      {},
+      {-1},
+      {-1, -1, -1},
+      {1, 2, 3, -1},
+      {2, 2, 6, 5, 5, 6, -1},
+      {4, 4, 4, 4, -1, 6, -1},
+      {4, 4, 4, 4, 16, 7, 7, 16, 14, 14, 13, 13, 13, 14, 16, 16, -1}};
 };
 
 // When each task ran, in any order that two threads can be told apart by.
@@ -64,7 +70,8 @@ TEST_F(TasksInParallel, SideTasksRunOnce) {
         TaskTree tree(parent);
         std::vector<std::atomic<int>> runs(static_cast<std::size_t>(count));
         visits(tree, true, {count, [&](Index k) { ++runs[k]; }});
-        for (Index k = 0; k < count; ++k) EXPECT_EQ(runs[k], 1) << k << " of " << count << ", tree of " << parent.size();
+        for (Index k = 0; k < count; ++k)
+          EXPECT_EQ(runs[k], 1) << k << " of " << count << ", tree of " << parent.size();
       }
   }
 }

@@ -21,9 +21,12 @@ Mat3 frame_of(const Vec3& n, FrameChoice choice) {
   return frame;
 }
 
-double orthonormality_error(const Mat3& frame) { return (frame.transpose() * frame - Mat3::Identity()).cwiseAbs().maxCoeff(); }
+double orthonormality_error(const Mat3& frame) {
+  return (frame.transpose() * frame - Mat3::Identity()).cwiseAbs().maxCoeff();
+}
 
-// The whole sphere, with the six poles, and around the poles of all axes at distances from 1e-16 to 1e-3 (as 1 - |p|) and sqrt of these.
+// The whole sphere, with the six poles, and around the poles of all axes at distances from 1e-16 to
+// 1e-3 (as 1 - |p|) and sqrt of these.
 std::vector<Vec3> directions() {
   std::vector<Vec3> all;
   for (int axis = 0; axis < 3; ++axis)
@@ -41,13 +44,16 @@ std::vector<Vec3> directions() {
     }
   std::mt19937 random(1);
   std::normal_distribution<double> normal;
-  for (int k = 0; k < 20000; ++k) all.push_back(Vec3(normal(random), normal(random), normal(random)).normalized());
+  for (int k = 0; k < 20000; ++k)
+    all.push_back(Vec3(normal(random), normal(random), normal(random)).normalized());
   return all;
 }
 
 TEST(OrthonormalComplement, duffHasNoBadDirection) {
-  for (const Vec3& n : directions()) ASSERT_LT(orthonormality_error(frame_of(n, FrameChoice::duff)), 1e-12) << n.transpose();
-  for (const double z : {0.0, -0.0}) EXPECT_LT(orthonormality_error(frame_of(Vec3(1, 0, z), FrameChoice::duff)), 1e-15);
+  for (const Vec3& n : directions())
+    ASSERT_LT(orthonormality_error(frame_of(n, FrameChoice::duff)), 1e-12) << n.transpose();
+  for (const double z : {0.0, -0.0})
+    EXPECT_LT(orthonormality_error(frame_of(Vec3(1, 0, z), FrameChoice::duff)), 1e-15);
 }
 
 TEST(OrthonormalComplement, paperEq13LosesDigitsOnlyNearItsPoles) {
@@ -61,7 +67,8 @@ TEST(OrthonormalComplement, paperEq13LosesDigitsOnlyNearItsPoles) {
     }
   }
   EXPECT_EQ(orthonormality_error(frame_of(Vec3(1, 0, 0), FrameChoice::paper_eq13)), 0.0);
-  EXPECT_EQ(orthonormality_error(frame_of(Vec3(-1, 0, 0), FrameChoice::paper_eq13)), 0.0);  // the printed formula divides by zero here
+  // the printed formula divides by zero here
+  EXPECT_EQ(orthonormality_error(frame_of(Vec3(-1, 0, 0), FrameChoice::paper_eq13)), 0.0);
 }
 
 TEST(OrthonormalComplement, paperEq13AsPrinted) {
@@ -78,18 +85,21 @@ TEST(ConstraintSet, projectionIsUUTransposedForEveryNdof) {
   for (const FrameChoice choice : {FrameChoice::duff, FrameChoice::paper_eq13})
     for (const Vec3& first : directions()) {
       const double s2 = first.y() * first.y() + first.z() * first.z();
-      if (choice == FrameChoice::paper_eq13 && s2 > 0.0 && s2 < 1e-4) continue;  // where it loses digits, see above
+      // where it loses digits, see above
+      if (choice == FrameChoice::paper_eq13 && s2 > 0.0 && s2 < 1e-4) continue;
       ConstraintSet set(1, choice);
       for (int ndof = 3; ndof >= 0; --ndof) {
         ASSERT_EQ(set.ndof(0), ndof);
         Mat3 projection = Mat3::Zero();
-        for (int c = 0; c < ndof; ++c) projection += set.frame(0).col(c) * set.frame(0).col(c).transpose();
+        for (int c = 0; c < ndof; ++c)
+          projection += set.frame(0).col(c) * set.frame(0).col(c).transpose();
         ASSERT_LT((set.projection(0) - projection).norm(), 1e-12);
         ASSERT_LT(orthonormality_error(set.frame(0)), 1e-11);
         const Vec3 a = vector();
         ASSERT_LT((set.free_part(0, a) - set.projection(0) * a).norm(), 1e-12);
         ASSERT_LT((set.free_part(0, a) + set.constrained_part(0, a) - a).norm(), 1e-14);
-        ASSERT_LT(set.free_part(0, set.displacement(0)).norm(), 1e-11 * (1 + set.displacement(0).norm()));
+        ASSERT_LT(set.free_part(0, set.displacement(0)).norm(),
+                  1e-11 * (1 + set.displacement(0).norm()));
         if (ndof == 3) set.constrain(0, 2.5 * first, 0.3);
         if (ndof < 3 && ndof > 0) {
           const int before = set.ndof(0);
@@ -116,13 +126,17 @@ TEST(ConstraintSet, everyNormalIsSatisfiedWhateverTheirAngles) {
       rows.row(c) = normals.back().normalized();
     }
     if (count == 3 && std::abs(rows.determinant()) < 0.05) continue;
-    if (count == 2 && normals[0].normalized().cross(normals[1].normalized()).norm() < 0.05) continue;
+    if (count == 2 && normals[0].normalized().cross(normals[1].normalized()).norm() < 0.05)
+      continue;
     for (int c = 0; c < count; ++c) set.constrain(0, normals[c], distances[c]);
     ASSERT_EQ(set.ndof(0), 3 - count);
-    for (int c = 0; c < count; ++c) ASSERT_NEAR(normals[c].dot(set.displacement(0)), distances[c], 1e-12);
+    for (int c = 0; c < count; ++c)
+      ASSERT_NEAR(normals[c].dot(set.displacement(0)), distances[c], 1e-12);
     // No more than what is prescribed: the displacement of least length.
-    for (int c = 0; c < set.ndof(0); ++c) ASSERT_NEAR(set.frame(0).col(c).dot(set.displacement(0)), 0.0, 1e-13);
-    for (int c = 0; c < count; ++c) ASSERT_LT(set.free_part(0, normals[c]).norm(), 1e-12 * normals[c].norm() / 0.05);
+    for (int c = 0; c < set.ndof(0); ++c)
+      ASSERT_NEAR(set.frame(0).col(c).dot(set.displacement(0)), 0.0, 1e-13);
+    for (int c = 0; c < count; ++c)
+      ASSERT_LT(set.free_part(0, normals[c]).norm(), 1e-12 * normals[c].norm() / 0.05);
     full += count == 3;
   }
   EXPECT_GT(full, 500);

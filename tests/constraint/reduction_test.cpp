@@ -8,14 +8,18 @@
 namespace taut::test {
 namespace {
 
-// ndof 0..3 at random, or all nodes as `only` says; normals now and then at the poles of both frame constructions.
+// ndof 0..3 at random, or all nodes as `only` says; normals now and then at the poles of both frame
+// constructions.
 ConstraintSet random_constraints(Random& random, Index nodes, FrameChoice choice, int only = -1) {
   ConstraintSet set(nodes, choice);
-  const Vec3 poles[] = {Vec3::UnitX(), -Vec3::UnitX(), Vec3::UnitY(), -Vec3::UnitY(), Vec3::UnitZ(), -Vec3::UnitZ()};
+  const Vec3 poles[] = {Vec3::UnitX(),  -Vec3::UnitX(), Vec3::UnitY(),
+                        -Vec3::UnitY(), Vec3::UnitZ(),  -Vec3::UnitZ()};
   for (Index i = 0; i < nodes; ++i) {
     const int ndof = only >= 0 ? only : random.below(4);
     if (ndof == 0) set.fix(i, Vec3::Zero());
-    while (set.ndof(i) > ndof) set.constrain(i, random.below(3) == 0 ? poles[random.below(6)] : random.direction(), random.uniform());
+    while (set.ndof(i) > ndof)
+      set.constrain(i, random.below(3) == 0 ? poles[random.below(6)] : random.direction(),
+                    random.uniform());
   }
   return set;
 }
@@ -40,7 +44,8 @@ TEST(Reduction, MatrixIsUtAU) {
   Random random(1);
   for (const FrameChoice choice : choices)
     for (const int only : {-1, 0, 1, 2, 3}) {
-      const BlockCsr a = random_matrix(random, make_pattern(random_graph(random, 40, 3, 15), 3));  // any matrix, not only symmetric ones
+      // any matrix, not only symmetric ones
+      const BlockCsr a = random_matrix(random, make_pattern(random_graph(random, 40, 3, 15), 3));
       const ConstraintSet set = random_constraints(random, 40, choice, only);
       const Eigen::MatrixXd u = dense_u(set);
       ASSERT_LT((u.transpose() * u - Eigen::MatrixXd::Identity(u.cols(), u.cols())).norm(), 1e-13);
@@ -99,7 +104,8 @@ TEST(Reduction, PatternIsRebuiltOnlyWhenItChanges) {
   EXPECT_TRUE(reduction.update(a, &set));
   const auto pattern = reduction.matrix().pattern;
   const auto expect_current = [&](const ConstraintSet* constraints) {
-    const Eigen::MatrixXd u = constraints ? dense_u(*constraints) : Eigen::MatrixXd::Identity(90, 90);
+    const Eigen::MatrixXd u =
+        constraints ? dense_u(*constraints) : Eigen::MatrixXd::Identity(90, 90);
     EXPECT_LT(difference(reduction.matrix(), u.transpose() * dense(a) * u), 1e-14);
   };
 
@@ -135,7 +141,8 @@ TEST(Reduction, WithoutConstraintsIsACopyOfAnyMatrix) {
   Random random(5);
   for (const Index dim : {1, 3, 0}) {  // 0: mixed
     const auto graph = random_graph(random, 30, 3, 15);
-    const BlockCsr a = random_matrix(random, dim ? make_pattern(graph, dim) : make_pattern(graph, random_dims(random, 30)));
+    const BlockCsr a = random_matrix(
+        random, dim ? make_pattern(graph, dim) : make_pattern(graph, random_dims(random, 30)));
     Reduction reduction;
     EXPECT_TRUE(reduction.update(a, nullptr));
     EXPECT_EQ(dense(reduction.matrix()), dense(a));
@@ -161,14 +168,16 @@ TEST(Reduction, VectorsAgainstDense) {
       const Eigen::MatrixXd u = dense_u(set);
       const Eigen::MatrixXd s = u * u.transpose();
       const Eigen::MatrixXd i_minus_s = Eigen::MatrixXd::Identity(150, 150) - s;
-      const std::vector<double> full = random.vector(150), z = random.vector(150), reduced = random.vector(set.free_dofs());
+      const std::vector<double> full = random.vector(150), z = random.vector(150),
+                                reduced = random.vector(set.free_dofs());
 
       std::vector<double> restricted(reduced.size());
       restrict_to_free(&set, full, restricted);
       EXPECT_LE((as_eigen(restricted) - u.transpose() * as_eigen(full)).norm(), 1e-14);
       std::vector<double> prolonged(150, 1e300);
       prolong(&set, reduced, z, prolonged);
-      EXPECT_LE((as_eigen(prolonged) - (u * as_eigen(reduced) + i_minus_s * as_eigen(z))).norm(), 1e-13);
+      EXPECT_LE((as_eigen(prolonged) - (u * as_eigen(reduced) + i_minus_s * as_eigen(z))).norm(),
+                1e-13);
       std::vector<double> v = full;
       project_free(&set, v);
       EXPECT_LE((as_eigen(v) - s * as_eigen(full)).norm(), 1e-13);

@@ -15,9 +15,11 @@ namespace {
 using test::make_soup;
 using test::Soup;
 
-// The greatest gap that the boxes of two sets of corners keep along an axis, on one side, at both ends, m; negative where there is none.
+// The greatest gap that the boxes of two sets of corners keep along an axis, on one side, at both
+// ends, m; negative where there is none.
 double gap_between(const Soup& soup, std::span<const Index> a, std::span<const Index> b) {
-  const auto least_difference = [&](const std::vector<Vec3>& x, std::span<const Index> upper, std::span<const Index> lower, int i) {
+  const auto least_difference = [&](const std::vector<Vec3>& x, std::span<const Index> upper,
+                                    std::span<const Index> lower, int i) {
     double gap = std::numeric_limits<double>::infinity();
     for (const Index u : upper)
       for (const Index l : lower) gap = std::min(gap, x[u][i] - x[l][i]);
@@ -26,7 +28,8 @@ double gap_between(const Soup& soup, std::span<const Index> a, std::span<const I
   double gap = -std::numeric_limits<double>::infinity();
   for (int i = 0; i < 3; ++i)
     for (const auto& [upper, lower] : {std::pair(a, b), std::pair(b, a)})
-      gap = std::max(gap, std::min(least_difference(soup.x0, upper, lower, i), least_difference(soup.x1, upper, lower, i)));
+      gap = std::max(gap, std::min(least_difference(soup.x0, upper, lower, i),
+                                   least_difference(soup.x1, upper, lower, i)));
   return gap;
 }
 
@@ -34,10 +37,12 @@ bool share(std::span<const Index> a, std::span<const Index> b) {
   return std::ranges::any_of(a, [&](Index v) { return std::ranges::find(b, v) != b.end(); });
 }
 
-// `found` (sorted) against all pairs: those within the margin must be there, those far beyond its rounding must not.
+// `found` (sorted) against all pairs: those within the margin must be there, those far beyond its
+// rounding must not.
 template <class Pair, class First, class Second>
-void expect_pairs(const Soup& soup, double margin, std::vector<Pair> found, Index firsts, Index seconds, const First& first,
-                  const Second& second, bool ordered, std::span<const std::uint8_t> moved) {
+void expect_pairs(const Soup& soup, double margin, std::vector<Pair> found, Index firsts,
+                  Index seconds, const First& first, const Second& second, bool ordered,
+                  std::span<const std::uint8_t> moved) {
   std::ranges::sort(found);
   EXPECT_EQ(std::ranges::adjacent_find(found), found.end()) << "a pair is reported twice";
   std::size_t matched = 0;
@@ -45,7 +50,8 @@ void expect_pairs(const Soup& soup, double margin, std::vector<Pair> found, Inde
     for (Index j = ordered ? i + 1 : 0; j < seconds; ++j) {
       const std::span<const Index> a = first(i), b = second(j);
       const auto is_moved = [&](Index v) { return moved.empty() || moved[v] != 0; };
-      const bool wanted = !share(a, b) && !(soup.surface.is_solid[a[0]] && soup.surface.is_solid[b[0]]) &&
+      const bool wanted = !share(a, b) &&
+                          !(soup.surface.is_solid[a[0]] && soup.surface.is_solid[b[0]]) &&
                           (std::ranges::any_of(a, is_moved) || std::ranges::any_of(b, is_moved));
       const bool listed = std::ranges::binary_search(found, Pair{i, j});
       matched += listed;
@@ -64,7 +70,8 @@ void expect_pairs(const Soup& soup, double margin, std::vector<Pair> found, Inde
   EXPECT_EQ(matched, found.size()) << "a pair is out of range";
 }
 
-void check_against_all_pairs(const Soup& soup, double margin, std::span<const std::uint8_t> moved = {}) {
+void check_against_all_pairs(const Soup& soup, double margin,
+                             std::span<const std::uint8_t> moved = {}) {
   const CollisionSurface& surface = soup.surface;
   BroadPhase broad_phase(surface, soup.x0);
   if (moved.empty()) {
@@ -88,9 +95,12 @@ void check_against_all_pairs(const Soup& soup, double margin, std::span<const st
   broad_phase.find_vertex_triangle(vertex_triangle, moved);
   broad_phase.find_edge_edge(edge_edge, moved);
   broad_phase.find_edge_triangle(edge_triangle, moved);
-  expect_pairs(soup, margin, vertex_triangle, surface.vertices, surface.triangle_count(), vertex, triangle, false, moved);
-  expect_pairs(soup, margin, edge_edge, surface.edge_count(), surface.edge_count(), edge, edge, true, moved);
-  expect_pairs(soup, margin, edge_triangle, surface.edge_count(), surface.triangle_count(), edge, triangle, false, moved);
+  expect_pairs(soup, margin, vertex_triangle, surface.vertices, surface.triangle_count(), vertex,
+               triangle, false, moved);
+  expect_pairs(soup, margin, edge_edge, surface.edge_count(), surface.edge_count(), edge, edge,
+               true, moved);
+  expect_pairs(soup, margin, edge_triangle, surface.edge_count(), surface.triangle_count(), edge,
+               triangle, false, moved);
 }
 
 }  // namespace
@@ -103,7 +113,9 @@ TEST(BroadPhase, FindsWhatAllPairsFind) {
 
 // Trees of one group, of full and of almost empty groups, of several levels.
 TEST(BroadPhase, TreesOfAllSizes) {
-  for (Index nu = 2; nu < 12; ++nu) check_against_all_pairs(make_soup(static_cast<std::uint32_t>(nu), nu, 2, nu % 3, 0.05, 0.02), 0.02);
+  for (Index nu = 2; nu < 12; ++nu)
+    check_against_all_pairs(make_soup(static_cast<std::uint32_t>(nu), nu, 2, nu % 3, 0.05, 0.02),
+                            0.02);
 }
 
 TEST(BroadPhase, OnlyPairsWithAMovedVertex) {
@@ -113,7 +125,8 @@ TEST(BroadPhase, OnlyPairsWithAMovedVertex) {
     for (std::size_t v = 5; v < moved.size(); v += static_cast<std::size_t>(every)) moved[v] = 1;
     check_against_all_pairs(soup, 0.01, moved);
   }
-  check_against_all_pairs(soup, 0.01, std::vector<std::uint8_t>(static_cast<std::size_t>(soup.surface.vertices), 0));
+  check_against_all_pairs(
+      soup, 0.01, std::vector<std::uint8_t>(static_cast<std::size_t>(soup.surface.vertices), 0));
 }
 
 // A shape at rest, whose boxes at the end are not set, may have come in between.
@@ -137,7 +150,8 @@ TEST(BroadPhase, BoxesAreRoundedOutwards) {
   for (int k = 0; k < 500; ++k) places.push_back(test::anywhere(random, 10.0)[0]);
   for (const double place : places) {
     Soup soup;
-    soup.x0 = {Vec3(place, 0, 0), Vec3(place, 1, 0), Vec3(place, 0, 1), Vec3(place, 0, 0), Vec3(place, 1, 0), Vec3(place, 0, 1)};
+    soup.x0 = {Vec3(place, 0, 0), Vec3(place, 1, 0), Vec3(place, 0, 1),
+               Vec3(place, 0, 0), Vec3(place, 1, 0), Vec3(place, 0, 1)};
     soup.x1 = soup.x0;
     const std::vector<Triangle> triangles{{0, 1, 2}, {3, 4, 5}};
     const SurfacePart part{6, triangles, false};
@@ -169,10 +183,12 @@ TEST(BroadPhase, FlyingTogetherAddsNoPairs) {
 TEST(BroadPhase, VerticesThatAreNotFiniteMeetEverything) {
   static constexpr Index lost = 7;
   Soup soup = make_soup(5, 6, 6, 0, 0.0, 0.0);
-  const auto others =
-      std::ranges::count_if(soup.surface.triangles, [](const Triangle& t) { return std::ranges::find(t, lost) == t.end(); });
+  const auto others = std::ranges::count_if(soup.surface.triangles, [](const Triangle& t) {
+    return std::ranges::find(t, lost) == t.end();
+  });
   BroadPhase broad_phase(soup.surface, soup.x0);
-  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+  for (const double bad :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     soup.x1[lost][1] = bad;
     broad_phase.refit(soup.x0, soup.x1, 0.0);
     std::vector<VertexTriangle> pairs;
@@ -218,9 +234,21 @@ TEST(CollisionSurface, JoinsPartsInOrder) {
   const SurfacePart parts[]{{4, square, false}, {3, one, true}, {4, square, false}};
   const CollisionSurface surface = join_surfaces(parts);
   EXPECT_EQ(surface.vertices, 11);
-  EXPECT_EQ(surface.triangles, (std::vector<Triangle>{{0, 1, 2}, {2, 1, 3}, {6, 4, 5}, {7, 8, 9}, {9, 8, 10}}));
-  EXPECT_EQ(surface.edges, (std::vector<EdgeVertices>{
-                               {0, 1}, {0, 2}, {1, 2}, {1, 3}, {2, 3}, {4, 5}, {4, 6}, {5, 6}, {7, 8}, {7, 9}, {8, 9}, {8, 10}, {9, 10}}));
+  EXPECT_EQ(surface.triangles,
+            (std::vector<Triangle>{{0, 1, 2}, {2, 1, 3}, {6, 4, 5}, {7, 8, 9}, {9, 8, 10}}));
+  EXPECT_EQ(surface.edges, (std::vector<EdgeVertices>{{0, 1},
+                                                      {0, 2},
+                                                      {1, 2},
+                                                      {1, 3},
+                                                      {2, 3},
+                                                      {4, 5},
+                                                      {4, 6},
+                                                      {5, 6},
+                                                      {7, 8},
+                                                      {7, 9},
+                                                      {8, 9},
+                                                      {8, 10},
+                                                      {9, 10}}));
   EXPECT_EQ(surface.body, (std::vector<Index>{0, 0, 0, 0, 1, 1, 1, 2, 2, 2, 2}));
   EXPECT_EQ(surface.is_solid, (std::vector<std::uint8_t>{0, 0, 0, 0, 1, 1, 1, 0, 0, 0, 0}));
 }

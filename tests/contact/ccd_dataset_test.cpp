@@ -23,7 +23,8 @@ std::vector<test::CcdQuery> test::read_ccd_queries(const std::filesystem::path& 
       std::getline(fields, field, ',');
       n = std::stod(field);
     }
-    queries.back().corners[row % 8] = {number[0] / number[1], number[2] / number[3], number[4] / number[5]};
+    queries.back().corners[row % 8] = {number[0] / number[1], number[2] / number[3],
+                                       number[4] / number[5]};
     queries.back().hits = number[6] != 0.0;
   }
   return queries;
@@ -55,10 +56,16 @@ TEST(CcdDataset, MissesNothing) {
   const CcdOptions options;
   count(
       *data / "ccd/unit-tests/vertex-face",
-      [&](const auto& x) { return vertex_triangle_impact(x[0], x[1], x[2], x[3], x[4], x[5], x[6], x[7], options); }, counts);
+      [&](const auto& x) {
+        return vertex_triangle_impact(x[0], x[1], x[2], x[3], x[4], x[5], x[6], x[7], options);
+      },
+      counts);
   count(
       *data / "ccd/unit-tests/edge-edge",
-      [&](const auto& x) { return edge_edge_impact(x[0], x[1], x[2], x[3], x[4], x[5], x[6], x[7], options); }, counts);
+      [&](const auto& x) {
+        return edge_edge_impact(x[0], x[1], x[2], x[3], x[4], x[5], x[6], x[7], options);
+      },
+      counts);
   EXPECT_EQ(counts.queries, 324);
   EXPECT_EQ(counts.missed, 0);
   EXPECT_EQ(counts.false_alarms, 0);

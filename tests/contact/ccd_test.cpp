@@ -28,14 +28,17 @@ Vec3 anywhere(std::mt19937& random, double bound) {
   return Vec3(any(random), any(random), any(random));
 }
 
-// A pair that touches at t = eighth / 8 exactly: coordinates are multiples of 2^-12, so every number on the way is a double. The weights of
-// the point of contact are multiples of 1/8 too, 0 and 8 among them: corners, sides and inner points, the first and the last moment.
+// A pair that touches at t = eighth / 8 exactly: coordinates are multiples of 2^-12, so every
+// number on the way is a double. The weights of the point of contact are multiples of 1/8 too, 0
+// and 8 among them: corners, sides and inner points, the first and the last moment.
 struct ExactContact {
   Corners corners;
   double time;
 };
 
-Vec3 weighted(int eighths, const Vec3& a, const Vec3& b) { return ((8 - eighths) * a + eighths * b) / 8.0; }
+Vec3 weighted(int eighths, const Vec3& a, const Vec3& b) {
+  return ((8 - eighths) * a + eighths * b) / 8.0;
+}
 
 ExactContact exact_contact(PairKind kind, std::mt19937& random, int motion) {
   std::uniform_int_distribution<int> eighths(0, 8);
@@ -52,7 +55,8 @@ ExactContact exact_contact(PairKind kind, std::mt19937& random, int motion) {
     gap = weighted(u, at(1), weighted(v, at(2), at(3))) - at(0);
   else
     gap = weighted(v, at(2), at(3)) - weighted(u, at(0), at(1));
-  for (int k = 0; k < (kind == PairKind::vertex_triangle ? 1 : 2); ++k) x[k] += gap, x[k + 4] += gap;
+  for (int k = 0; k < (kind == PairKind::vertex_triangle ? 1 : 2); ++k)
+    x[k] += gap, x[k + 4] += gap;
   return {x, t / 8.0};
 }
 
@@ -70,26 +74,31 @@ TEST(Ccd, FindsEveryExactContact) {
       for (int k = 0; k < 5000; ++k) {
         const auto [corners, time] = exact_contact(kind, random, motion);
         for (const double scale : {1.0, 0x1p-60, 0x1p60, 0x1p-300}) {
-          const Impact impact = test::impact_of(kind, scaled(corners, scale, Vec3::Zero()), {.tolerance = 0.0});
-          ASSERT_TRUE(impact.hit) << "kind " << static_cast<int>(kind) << " motion " << motion << " query " << k << " scale " << scale;
+          const Impact impact =
+              test::impact_of(kind, scaled(corners, scale, Vec3::Zero()), {.tolerance = 0.0});
+          ASSERT_TRUE(impact.hit) << "kind " << static_cast<int>(kind) << " motion " << motion
+                                  << " query " << k << " scale " << scale;
           ASSERT_LE(impact.time, time);
         }
       }
 }
 
-// Far from the origin the corners are rounded already, so that they touch no more exactly; but those of 2^20 + multiples of 2^-12 are not.
+// Far from the origin the corners are rounded already, so that they touch no more exactly; but
+// those of 2^20 + multiples of 2^-12 are not.
 TEST(Ccd, FindsExactContactsFarFromTheOrigin) {
   std::mt19937 random(2);
   for (const PairKind kind : kinds)
     for (int k = 0; k < 5000; ++k) {
       const auto [corners, time] = exact_contact(kind, random, 5);
-      const Impact impact = test::impact_of(kind, scaled(corners, 1.0, Vec3(0x1p20, -0x1p20, 0x1p19)), {.tolerance = 0.0});
+      const Impact impact = test::impact_of(
+          kind, scaled(corners, 1.0, Vec3(0x1p20, -0x1p20, 0x1p19)), {.tolerance = 0.0});
       ASSERT_TRUE(impact.hit);
       ASSERT_LE(impact.time, time);
     }
 }
 
-// Degenerate on purpose: flat motion in one plane, parallel and collinear edges, triangles and edges without size.
+// Degenerate on purpose: flat motion in one plane, parallel and collinear edges, triangles and
+// edges without size.
 TEST(Ccd, FindsExactContactsOfDegenerateShapes) {
   std::mt19937 random(3);
   for (const PairKind kind : kinds)
@@ -124,15 +133,21 @@ TEST(Ccd, TimeOfAStraightFall) {
   EXPECT_TRUE(impact.hit);
   EXPECT_NEAR(impact.time, 0.25, 1e-12);
   EXPECT_LE(impact.time, 0.25);
-  const Impact apart = vertex_triangle_impact(p, a, b, c, end, a, b, c, {.minimum_separation = 0.5, .tolerance = 1e-12});
+  const Impact apart = vertex_triangle_impact(p, a, b, c, end, a, b, c,
+                                              {.minimum_separation = 0.5, .tolerance = 1e-12});
   EXPECT_NEAR(apart.time, 0.125, 1e-12);
   EXPECT_LE(apart.time, 0.125);
   // From above it stops at 0.1 and so stays 0.1 away.
-  EXPECT_FALSE(vertex_triangle_impact(p, a, b, c, Vec3(0.25, 0.25, 0.1), a, b, c, {.minimum_separation = 0.0999}).hit);
-  EXPECT_TRUE(vertex_triangle_impact(p, a, b, c, Vec3(0.25, 0.25, 0.1), a, b, c, {.minimum_separation = 0.1001}).hit);
+  EXPECT_FALSE(vertex_triangle_impact(p, a, b, c, Vec3(0.25, 0.25, 0.1), a, b, c,
+                                      {.minimum_separation = 0.0999})
+                   .hit);
+  EXPECT_TRUE(vertex_triangle_impact(p, a, b, c, Vec3(0.25, 0.25, 0.1), a, b, c,
+                                     {.minimum_separation = 0.1001})
+                  .hit);
 }
 
-// Where a slower, independent bound on the distance leaves no doubt, the answer must be that, and until `time` nothing has met.
+// Where a slower, independent bound on the distance leaves no doubt, the answer must be that, and
+// until `time` nothing has met.
 TEST(Ccd, AgreesWithTheDistanceInTime) {
   std::mt19937 random(4);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
@@ -141,16 +156,19 @@ TEST(Ccd, AgreesWithTheDistanceInTime) {
     for (const double motion : {0.05, 0.5, 5.0})
       for (int k = 0; k < 3000; ++k) {
         Corners x;
-        for (int i = 0; i < 4; ++i) x[i] = anywhere(random, 1.0), x[i + 4] = x[i] + anywhere(random, motion);
+        for (int i = 0; i < 4; ++i)
+          x[i] = anywhere(random, 1.0), x[i + 4] = x[i] + anywhere(random, motion);
         CcdOptions options;
         options.minimum_separation = k % 3 == 0 ? 0.0 : 0.1 * uniform(random);
         const Impact impact = test::impact_of(kind, x, options);
         const long double separation = options.minimum_separation;
         if (impact.hit) {
           ++hits;
-          ASSERT_LE(test::distance_at(kind, x, impact.time), separation + options.tolerance * 1.001L + 1e-14L);
+          ASSERT_LE(test::distance_at(kind, x, impact.time),
+                    separation + options.tolerance * 1.001L + 1e-14L);
           if (impact.time > 0.0) {
-            ASSERT_TRUE(test::surely_above(kind, x, separation, 0.0L, static_cast<long double>(impact.time) * (1 - 1e-6L)));
+            ASSERT_TRUE(test::surely_above(kind, x, separation, 0.0L,
+                                           static_cast<long double>(impact.time) * (1 - 1e-6L)));
           }
         } else {
           ++clear;
@@ -162,7 +180,8 @@ TEST(Ccd, AgreesWithTheDistanceInTime) {
   EXPECT_GT(clear, 500);
 }
 
-// Two edges that turn past each other, almost parallel all the time, at a given distance: neither missed nor a false alarm.
+// Two edges that turn past each other, almost parallel all the time, at a given distance: neither
+// missed nor a false alarm.
 TEST(Ccd, ParallelEdgesPassClosely) {
   for (const double gap : {1e-3, 1e-6, 1e-8}) {
     for (const double turn : {0.0, 1e-12, 1e-6, 0.1}) {
@@ -185,7 +204,9 @@ TEST(Ccd, ParallelEdgesPassClosely) {
 TEST(Ccd, NearMissesAreToldFromHits) {
   const Vec3 a(0, 0, 0), b(1, 0, 0), c(0, 1, 0);
   for (double gap = 0.1; gap > 1e-9; gap /= 7.0) {
-    const auto passes = [&](const Vec3& start, const Vec3& end) { return !vertex_triangle_impact(start, a, b, c, end, a, b, c, {}).hit; };
+    const auto passes = [&](const Vec3& start, const Vec3& end) {
+      return !vertex_triangle_impact(start, a, b, c, end, a, b, c, {}).hit;
+    };
     EXPECT_TRUE(passes({0.3, -gap, 1.0}, {0.3, -gap, -1.0})) << gap;
     EXPECT_FALSE(passes({0.3, gap, 1.0}, {0.3, gap, -1.0})) << gap;
     EXPECT_TRUE(passes({-gap, -gap, 0.5}, {-gap, -gap, -0.7})) << gap;
@@ -217,11 +238,13 @@ TEST(Ccd, GivesUpConservatively) {
 }
 
 TEST(Ccd, WhatIsNotFiniteIsAHit) {
-  const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
+  const double nan = std::numeric_limits<double>::quiet_NaN(),
+               infinity = std::numeric_limits<double>::infinity();
   for (const PairKind kind : kinds)
     for (int corner = 0; corner < 8; ++corner)
       for (const double bad : {nan, infinity, -infinity, 1e305}) {
-        Corners x{Vec3(0, 0, 9), Vec3(1, 0, 9), Vec3(0, 1, 0), Vec3(1, 1, 0), Vec3(0, 0, 9), Vec3(1, 0, 9), Vec3(0, 1, 0), Vec3(1, 1, 0)};
+        Corners x{Vec3(0, 0, 9), Vec3(1, 0, 9), Vec3(0, 1, 0), Vec3(1, 1, 0),
+                  Vec3(0, 0, 9), Vec3(1, 0, 9), Vec3(0, 1, 0), Vec3(1, 1, 0)};
         x[corner][corner % 3] = bad;
         EXPECT_EQ(test::impact_of(kind, x, {}), (Impact{true, 0.0}));
       }
@@ -234,7 +257,8 @@ TEST(Ccd, ListsAreAnsweredPairByPairForAnyThreadCount) {
   std::vector<Triangle> list;
   for (Index t = 0; t < triangles; ++t) {
     list.push_back({3 * t, 3 * t + 1, 3 * t + 2});
-    for (int k = 0; k < 3; ++k) x0.push_back(anywhere(random, 1.0)), x1.push_back(x0.back() + anywhere(random, 0.5));
+    for (int k = 0; k < 3; ++k)
+      x0.push_back(anywhere(random, 1.0)), x1.push_back(x0.back() + anywhere(random, 0.5));
   }
   const SurfacePart part{3 * triangles, list, false};
   const CollisionSurface surface = join_surfaces({&part, 1});
@@ -262,8 +286,8 @@ TEST(Ccd, ListsAreAnsweredPairByPairForAnyThreadCount) {
   auto hit = vertex_hits.begin();
   for (Index k = 0; k < 5000; ++k) {
     const auto [p, t] = vertex_pairs[k];
-    const Impact alone =
-        vertex_triangle_impact(x0[p], x0[3 * t], x0[3 * t + 1], x0[3 * t + 2], x1[p], x1[3 * t], x1[3 * t + 1], x1[3 * t + 2], {});
+    const Impact alone = vertex_triangle_impact(x0[p], x0[3 * t], x0[3 * t + 1], x0[3 * t + 2],
+                                                x1[p], x1[3 * t], x1[3 * t + 1], x1[3 * t + 2], {});
     const bool listed = hit != vertex_hits.end() && hit->pair == k;
     EXPECT_EQ(alone.hit, listed);
     if (listed) {

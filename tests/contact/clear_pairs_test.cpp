@@ -22,8 +22,9 @@ using test::PairKind;
 
 constexpr PairKind kinds[] = {PairKind::vertex_triangle, PairKind::edge_edge};
 
-std::vector<std::uint8_t> flags_of(bool single, const std::vector<PairCorners>& corners, bool edges, const std::vector<Vec3>& x0,
-                                   const std::vector<Vec3>& x1, double distance) {
+std::vector<std::uint8_t> flags_of(bool single, const std::vector<PairCorners>& corners, bool edges,
+                                   const std::vector<Vec3>& x0, const std::vector<Vec3>& x1,
+                                   double distance) {
   std::vector<std::uint8_t> flags(corners.size(), 255);
   const auto count = static_cast<Index>(corners.size());
   if (single) {
@@ -36,7 +37,8 @@ std::vector<std::uint8_t> flags_of(bool single, const std::vector<PairCorners>& 
   return flags;
 }
 
-std::vector<std::uint8_t> flags_of(bool single, PairKind kind, const std::vector<Corners>& pairs, double distance) {
+std::vector<std::uint8_t> flags_of(bool single, PairKind kind, const std::vector<Corners>& pairs,
+                                   double distance) {
   std::vector<Vec3> x0, x1;
   std::vector<PairCorners> corners;
   for (const Corners& x : pairs) {
@@ -60,7 +62,8 @@ Corners random_pair(std::mt19937& random, double apart, double motion) {
 
 // In double and in single precision.
 class ClearPairs : public testing::TestWithParam<bool> {};
-INSTANTIATE_TEST_SUITE_P(Precisions, ClearPairs, testing::Bool(), [](const auto& single) { return single.param ? "single" : "double"; });
+INSTANTIATE_TEST_SUITE_P(Precisions, ClearPairs, testing::Bool(),
+                         [](const auto& single) { return single.param ? "single" : "double"; });
 
 }  // namespace
 
@@ -69,7 +72,8 @@ TEST_P(ClearPairs, AreFurtherApartAllTheTime) {
   for (const PairKind kind : kinds)
     for (const double motion : {0.0, 0.1, 1.0}) {
       std::vector<Corners> pairs;
-      for (int k = 0; k < 1001; ++k) pairs.push_back(random_pair(random, 1.5, motion));  // not a multiple of the lanes
+      // not a multiple of the lanes
+      for (int k = 0; k < 1001; ++k) pairs.push_back(random_pair(random, 1.5, motion));
       constexpr double distance = 0.2;
       const std::vector<std::uint8_t> flags = flags_of(GetParam(), kind, pairs, distance);
       int clear = 0;
@@ -80,14 +84,15 @@ TEST_P(ClearPairs, AreFurtherApartAllTheTime) {
         }
         if (!(flags[k] & detail::clear_throughout)) continue;
         ++clear;
-        for (int t = 0; t <= 32; ++t) EXPECT_GT(test::distance_at(kind, pairs[k], t / 32.0L), distance) << k;
+        for (int t = 0; t <= 32; ++t)
+          EXPECT_GT(test::distance_at(kind, pairs[k], t / 32.0L), distance) << k;
       }
       EXPECT_GT(clear, 100) << motion;
     }
 }
 
-// Vertices on a face, edges that cross: exactly `gap` apart at one end, in numbers that are exact. Turned and scaled by powers of two and
-// swapped axes, they stay so.
+// Vertices on a face, edges that cross: exactly `gap` apart at one end, in numbers that are exact.
+// Turned and scaled by powers of two and swapped axes, they stay so.
 TEST_P(ClearPairs, NoneIsClearOfTheDistanceItHas) {
   std::mt19937 random(2);
   std::uniform_int_distribution<int> any(-8, 8), exponent(-40, 40);
@@ -107,7 +112,8 @@ TEST_P(ClearPairs, NoneIsClearOfTheDistanceItHas) {
       const bool touch_at_end = any(random) > 0;
       for (int k = 0; k < 4; ++k) x[k + 4] = x[k];
       // At the other end the first shape is further off.
-      for (int k = 0; k < (kind == PairKind::vertex_triangle ? 1 : 2); ++k) x[k + (touch_at_end ? 0 : 4)][2] += 5.0 * scale;
+      for (int k = 0; k < (kind == PairKind::vertex_triangle ? 1 : 2); ++k)
+        x[k + (touch_at_end ? 0 : 4)][2] += 5.0 * scale;
       const int turn = any(random) & 1;
       for (Vec3& corner : x)
         if (turn) corner = Vec3(corner[1], corner[2], corner[0]);
@@ -121,11 +127,13 @@ TEST_P(ClearPairs, NoneIsClearOfTheDistanceItHas) {
 TEST_P(ClearPairs, NumbersThatAreNotFiniteAreNotClear) {
   std::mt19937 random(3);
   for (const PairKind kind : kinds)
-    for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e200})
+    for (const double bad :
+         {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e200})
       for (int corner = 0; corner < 8; ++corner) {
         Corners x = random_pair(random, 0.0, 0.1);
-        for (int k = 0; k < 2; ++k) x[k][0] += 100.0, x[k + 4][0] += 100.0;  // far apart without the bad number
-        if (std::isfinite(bad)) x[0] = x[4] = x[2] = x[6];                   // huge, and touching
+        // far apart without the bad number
+        for (int k = 0; k < 2; ++k) x[k][0] += 100.0, x[k + 4][0] += 100.0;
+        if (std::isfinite(bad)) x[0] = x[4] = x[2] = x[6];  // huge, and touching
         x[corner][1] = bad;
         if (!std::isfinite(bad)) {
           EXPECT_FALSE(flags_of(GetParam(), kind, {x}, 0.1)[0] & detail::clear_throughout);
@@ -136,7 +144,8 @@ TEST_P(ClearPairs, NumbersThatAreNotFiniteAreNotClear) {
   for (const PairKind kind : kinds) EXPECT_EQ(flags_of(GetParam(), kind, {tiny}, 1e-150)[0], 0);
 }
 
-// Far from the origin, where floats are a thousandth of the distance apart and more, and with ends that move far.
+// Far from the origin, where floats are a thousandth of the distance apart and more, and with ends
+// that move far.
 TEST(ClearPairsInSingle, AreFurtherApartWhereverTheyAre) {
   std::mt19937 random(4);
   for (const PairKind kind : kinds)
@@ -149,7 +158,8 @@ TEST(ClearPairsInSingle, AreFurtherApartWhereverTheyAre) {
         pairs.push_back(x);
       }
       constexpr double distance = 0.002;
-      const std::vector<std::uint8_t> flags = flags_of(true, kind, pairs, distance), exact = flags_of(false, kind, pairs, distance);
+      const std::vector<std::uint8_t> flags = flags_of(true, kind, pairs, distance),
+                                      exact = flags_of(false, kind, pairs, distance);
       int missed = 0, clear = 0;
       for (std::size_t k = 0; k < pairs.size(); ++k) {
         clear += exact[k] == (detail::clear_at_start | detail::clear_throughout);
@@ -158,7 +168,8 @@ TEST(ClearPairsInSingle, AreFurtherApartWhereverTheyAre) {
           EXPECT_GT(test::distance_at(kind, pairs[k], 0), distance);
         }
         if (!(flags[k] & detail::clear_throughout)) continue;
-        for (int t = 0; t <= 8; ++t) EXPECT_GT(test::distance_at(kind, pairs[k], t / 8.0L), distance) << k;
+        for (int t = 0; t <= 8; ++t)
+          EXPECT_GT(test::distance_at(kind, pairs[k], t / 8.0L), distance) << k;
       }
       EXPECT_GT(clear, 100);
       if (size <= 1.0) {
@@ -171,7 +182,8 @@ namespace {
 
 using detail::SegmentTriangle;
 
-std::vector<std::uint8_t> apart_flags(const std::vector<SegmentTriangle>& pairs, const std::vector<Vec3>& x) {
+std::vector<std::uint8_t> apart_flags(const std::vector<SegmentTriangle>& pairs,
+                                      const std::vector<Vec3>& x) {
   std::vector<std::uint8_t> flags(pairs.size(), 255);
   detail::FloatWays positions;
   positions.set(x, x);
@@ -192,10 +204,12 @@ TEST(SegmentsApartFromTriangles, DoNotMeetThem) {
       std::vector<Vec3> x;
       std::vector<SegmentTriangle> pairs;
       for (int k = 0; k < 4001; ++k) {
-        const Vec3 shift = place * Vec3(1, 2, 3) + test::anywhere(random, place), away = test::anywhere(random, size);
+        const Vec3 shift = place * Vec3(1, 2, 3) + test::anywhere(random, place),
+                   away = test::anywhere(random, size);
         const auto first = static_cast<Index>(x.size());
         pairs.push_back({first, first + 1, first + 2, first + 3, first + 4});
-        for (int c = 0; c < 5; ++c) x.push_back(shift + test::anywhere(random, size) + (c < 2 ? away : Vec3(Vec3::Zero())));
+        for (int c = 0; c < 5; ++c)
+          x.push_back(shift + test::anywhere(random, size) + (c < 2 ? away : Vec3(Vec3::Zero())));
       }
       const std::vector<std::uint8_t> flags = apart_flags(pairs, x);
       int apart = 0, meeting = 0;
@@ -213,7 +227,8 @@ TEST(SegmentsApartFromTriangles, DoNotMeetThem) {
     }
 }
 
-// An end on the face, on a side, on a corner; a segment across a side or in the triangle's plane: in numbers that are exact.
+// An end on the face, on a side, on a corner; a segment across a side or in the triangle's plane:
+// in numbers that are exact.
 TEST(SegmentsApartFromTriangles, NoneThatTouchesIsApart) {
   std::mt19937 random(6);
   std::uniform_int_distribution<int> any(-8, 8), exponent(-30, 30), kinds(0, 3);
@@ -248,7 +263,8 @@ TEST(SegmentsApartFromTriangles, NoneThatTouchesIsApart) {
 }
 
 TEST(SegmentsApartFromTriangles, NumbersThatAreNotFiniteAreNotApart) {
-  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
+  for (const double bad :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
     for (int corner = 0; corner < 5; ++corner) {
       std::vector<Vec3> x{{0, 0, 9}, {1, 0, 9}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
       ASSERT_EQ(apart_flags({{0, 1, 2, 3, 4}}, x)[0], 1);
@@ -261,7 +277,8 @@ TEST(SegmentsApartFromTriangles, NumbersThatAreNotFiniteAreNotApart) {
 TEST_P(ClearPairs, NeighboursInASmoothSheetAreClear) {
   TriangleMesh sheet = make_grid({20, 20});
   const Mat3 turn = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
-  for (Vec3& x : sheet.positions) x = turn * Vec3(x[0], x[1], x[2] + 0.2 * x[0] * x[0] + 0.1 * x[1] * x[0]);
+  for (Vec3& x : sheet.positions)
+    x = turn * Vec3(x[0], x[1], x[2] + 0.2 * x[0] * x[0] + 0.1 * x[1] * x[0]);
   const SurfacePart part{static_cast<Index>(sheet.positions.size()), sheet.triangles, false};
   const CollisionSurface surface = join_surfaces({&part, 1});
   BroadPhase broad_phase(surface, sheet.positions);
@@ -270,9 +287,12 @@ TEST_P(ClearPairs, NeighboursInASmoothSheetAreClear) {
   const auto share_clear = [&](const auto& pairs, bool edges) {
     std::vector<PairCorners> corners;
     for (const auto& pair : pairs) corners.push_back(pair_of(surface, pair).node);
-    const std::vector<std::uint8_t> flags = flags_of(GetParam(), corners, edges, sheet.positions, sheet.positions, distance);
+    const std::vector<std::uint8_t> flags =
+        flags_of(GetParam(), corners, edges, sheet.positions, sheet.positions, distance);
     EXPECT_GT(corners.size(), 100u);
-    return static_cast<double>(std::ranges::count(flags, detail::clear_at_start | detail::clear_throughout)) / double(flags.size());
+    return static_cast<double>(
+               std::ranges::count(flags, detail::clear_at_start | detail::clear_throughout)) /
+           double(flags.size());
   };
   std::vector<VertexTriangle> vertex_triangle;
   std::vector<EdgeEdge> edge_edge;
@@ -290,7 +310,9 @@ TEST_P(ClearPairs, NeighboursInASmoothSheetAreClear) {
     pairs.push_back({e[0], e[1], t[0], t[1], t[2]});
   }
   EXPECT_GT(pairs.size(), 100u);
-  EXPECT_GT(static_cast<double>(std::ranges::count(apart_flags(pairs, sheet.positions), 1)) / double(pairs.size()), 0.99);
+  EXPECT_GT(static_cast<double>(std::ranges::count(apart_flags(pairs, sheet.positions), 1)) /
+                double(pairs.size()),
+            0.99);
 }
 
 }  // namespace taut

@@ -1,4 +1,5 @@
-// Cloth kept from passing through cloth: whatever the end of a step was, nothing meets on the way to the corrected one.
+// Cloth kept from passing through cloth: whatever the end of a step was, nothing meets on the way
+// to the corrected one.
 
 #include "taut/contact/cloth_contact.h"
 
@@ -28,7 +29,8 @@ struct Pieces {
   Pieces() { options.thickness = thickness; }
 
   // Each node moves by `motion` in the step.
-  Index add(const std::string& name, const TriangleMesh& mesh, const Vec3& motion, bool solid = false) {
+  Index add(const std::string& name, const TriangleMesh& mesh, const Vec3& motion,
+            bool solid = false) {
     const Index first = static_cast<Index>(x0.size());
     meshes.push_back(mesh);
     bodies.push_back({name, solid, 0.0, 0.3});
@@ -46,7 +48,8 @@ struct Pieces {
   CollisionSurface surface() const {
     std::vector<SurfacePart> parts;
     for (std::size_t k = 0; k < meshes.size(); ++k)
-      parts.push_back({static_cast<Index>(meshes[k].positions.size()), meshes[k].triangles, bodies[k].is_solid});
+      parts.push_back({static_cast<Index>(meshes[k].positions.size()), meshes[k].triangles,
+                       bodies[k].is_solid});
     return join_surfaces(parts);
   }
 
@@ -66,7 +69,8 @@ struct Pieces {
     return result;
   }
 
-  // Collisions on the straight way to `end`, by the detection that the response uses, and exact intersections there.
+  // Collisions on the straight way to `end`, by the detection that the response uses, and exact
+  // intersections there.
   std::size_t collisions(const std::vector<Vec3>& end) const {
     const CollisionSurface all = surface();
     PairSearch search(all, x0);
@@ -76,11 +80,14 @@ struct Pieces {
   }
 };
 
-TriangleMesh sheet(Index side, double size, const Vec3& middle, const Vec3& u = Vec3::UnitX(), const Vec3& v = Vec3::UnitY()) {
+TriangleMesh sheet(Index side, double size, const Vec3& middle, const Vec3& u = Vec3::UnitX(),
+                   const Vec3& v = Vec3::UnitY()) {
   return make_grid({side, side, middle - 0.5 * size * (u + v), size * u, size * v});
 }
 
-TriangleMesh triangle(const Vec3& a, const Vec3& b, const Vec3& c) { return {{a, b, c}, {{0, 1, 2}}, {}}; }
+TriangleMesh triangle(const Vec3& a, const Vec3& b, const Vec3& c) {
+  return {{a, b, c}, {{0, 1, 2}}, {}};
+}
 
 Vec3 momentum(const Pieces& p, const std::vector<Vec3>& end) {
   Vec3 sum = Vec3::Zero();
@@ -106,7 +113,8 @@ double total_turning(const Pieces& p, const std::vector<Vec3>& end) {
   Vec3 centre = Vec3::Zero();
   for (const Vec3& x : p.x0) centre += x / p.x0.size();  // all nodes weigh the same
   double sum = 0.0;
-  for (std::size_t i = 0; i < end.size(); ++i) sum += p.mass[i] * (p.x0[i] - centre).norm() * (end[i] - p.x0[i]).norm();
+  for (std::size_t i = 0; i < end.size(); ++i)
+    sum += p.mass[i] * (p.x0[i] - centre).norm() * (end[i] - p.x0[i]).norm();
   return sum;
 }
 
@@ -157,12 +165,14 @@ TEST(ClothContact, TwoSheetsThrownAtEachOtherDoNotPass) {
     EXPECT_LE((momentum(p, result.x1) - momentum(p, p.x1)).norm(), 1e-12 * total_motion(p, p.x1));
     double low = 0.0, high = 0.0;
     for (Index i = 0; i < second; ++i) low += result.x1[i].z() / second;
-    for (std::size_t i = second; i < p.x0.size(); ++i) high += result.x1[i].z() / (p.x0.size() - second);
+    for (std::size_t i = second; i < p.x0.size(); ++i)
+      high += result.x1[i].z() / (p.x0.size() - second);
     if (way < 0.1) {  // else a zone turns too far
       EXPECT_EQ(result.counts.inexact, 0);
     }
     if (result.counts.inexact == 0) {
-      EXPECT_LE((angular_momentum(p, result.x1) - angular_momentum(p, p.x1)).norm(), 1e-10 * total_turning(p, p.x1));
+      EXPECT_LE((angular_momentum(p, result.x1) - angular_momentum(p, p.x1)).norm(),
+                1e-10 * total_turning(p, p.x1));
     }
     EXPECT_LT(low, high) << "on their own sides";
     EXPECT_LT(high - low, 6e-3) << "and close together: a collision without rebound";
@@ -172,7 +182,9 @@ TEST(ClothContact, TwoSheetsThrownAtEachOtherDoNotPass) {
 TEST(ClothContact, NodeShotThroughATriangleAt100MetresASecond) {
   Pieces p;
   p.add("shield", sheet(5, 0.1, Vec3::Zero()), Vec3::Zero());
-  const Index tip = p.add("arrow", triangle(Vec3(0.004, 0.003, 0.02), Vec3(0.01, 0, 0.05), Vec3(0, 0.01, 0.05)), Vec3(0, 0, -100 * h));
+  const Index tip =
+      p.add("arrow", triangle(Vec3(0.004, 0.003, 0.02), Vec3(0.01, 0, 0.05), Vec3(0, 0.01, 0.05)),
+            Vec3(0, 0, -100 * h));
   EXPECT_GT(p.collisions(p.x1), 0u);
   const auto result = p.resolve();
   ASSERT_TRUE(result.status.ok()) << result.status.message;
@@ -186,15 +198,19 @@ TEST(ClothContact, NodeShotThroughATriangleAt100MetresASecond) {
 
 TEST(ClothContact, EdgeOverEdge) {
   Pieces p;
-  p.add("along x", triangle(Vec3(-0.05, 0, 0), Vec3(0.05, 0, 0), Vec3(0, 0.001, -0.05)), Vec3(0, 0, 0));
-  p.add("along y", triangle(Vec3(0.003, -0.05, 0.004), Vec3(0.003, 0.05, 0.004), Vec3(0, 0.001, 0.05)), Vec3(0, 0, -0.03));
+  p.add("along x", triangle(Vec3(-0.05, 0, 0), Vec3(0.05, 0, 0), Vec3(0, 0.001, -0.05)),
+        Vec3(0, 0, 0));
+  p.add("along y",
+        triangle(Vec3(0.003, -0.05, 0.004), Vec3(0.003, 0.05, 0.004), Vec3(0, 0.001, 0.05)),
+        Vec3(0, 0, -0.03));
   p.options.friction = 0.0;
   EXPECT_GT(p.collisions(p.x1), 0u);
   const auto result = p.resolve();
   ASSERT_TRUE(result.status.ok()) << result.status.message;
   EXPECT_EQ(p.collisions(result.x1), 0u);
   EXPECT_EQ(result.counts.zones, 0) << "impulses are enough";
-  const double low = 0.5 * (result.x1[0].z() + result.x1[1].z()), high = 0.5 * (result.x1[3].z() + result.x1[4].z());
+  const double low = 0.5 * (result.x1[0].z() + result.x1[1].z()),
+               high = 0.5 * (result.x1[3].z() + result.x1[4].z());
   EXPECT_GT(high, low);
   EXPECT_LT(high - low, thickness);
 }
@@ -236,7 +252,8 @@ TEST(ClothContact, ClumpKeepsItsMomentum) {
     EXPECT_GT(result.counts.impacts, 100);
     EXPECT_EQ(p.collisions(result.x1), 0u);
     EXPECT_LE((momentum(p, result.x1) - momentum(p, p.x1)).norm(), 1e-12 * total_motion(p, p.x1));
-    EXPECT_LE((angular_momentum(p, result.x1) - angular_momentum(p, p.x1)).norm(), 1e-10 * total_turning(p, p.x1));
+    EXPECT_LE((angular_momentum(p, result.x1) - angular_momentum(p, p.x1)).norm(),
+              1e-10 * total_turning(p, p.x1));
   }
 }
 
@@ -252,7 +269,8 @@ TEST(ClothContact, ZonesKeepAngularMomentumToo) {
     EXPECT_EQ(p.collisions(result.x1), 0u);
     const double scale = total_motion(p, p.x1);
     EXPECT_LE((momentum(p, result.x1) - momentum(p, p.x1)).norm(), 1e-10 * scale);
-    EXPECT_LE((angular_momentum(p, result.x1) - angular_momentum(p, p.x1)).norm(), 1e-10 * scale * 0.5);
+    EXPECT_LE((angular_momentum(p, result.x1) - angular_momentum(p, p.x1)).norm(),
+              1e-10 * scale * 0.5);
     EXPECT_EQ(static_cast<Index>(result.zones.node.size()), result.counts.zone_nodes);
     EXPECT_TRUE(std::ranges::is_sorted(result.zones.node));
   }
@@ -267,7 +285,8 @@ TEST(ClothContact, PinnedNodesAreNotMoved) {
   ASSERT_TRUE(result.status.ok()) << result.status.message;
   EXPECT_EQ(p.collisions(result.x1), 0u);
   for (Index i = 0; i < second; ++i) EXPECT_EQ(result.x1[i], p.x1[i]);
-  for (std::size_t i = second; i < p.x0.size(); ++i) EXPECT_GT(result.x1[i].z(), 0.01) << "carried up";
+  for (std::size_t i = second; i < p.x0.size(); ++i)
+    EXPECT_GT(result.x1[i].z(), 0.01) << "carried up";
 }
 
 TEST(ClothContact, PinsThatCrossEachOtherAreNamed) {
@@ -277,8 +296,10 @@ TEST(ClothContact, PinsThatCrossEachOtherAreNamed) {
   for (Index i = 0; i < 2 * second; ++i) p.hold(i);
   const auto result = p.resolve();
   EXPECT_FALSE(result.status.ok());
-  EXPECT_NE(result.status.message.find("cloth 'left' node"), std::string::npos) << result.status.message;
-  EXPECT_NE(result.status.message.find("cloth 'right' node"), std::string::npos) << result.status.message;
+  EXPECT_NE(result.status.message.find("cloth 'left' node"), std::string::npos)
+      << result.status.message;
+  EXPECT_NE(result.status.message.find("cloth 'right' node"), std::string::npos)
+      << result.status.message;
 }
 
 TEST(ClothContact, PinchedBetweenTwoSolidsIsNamed) {

@@ -1,4 +1,5 @@
-// The gradient of the contour's length against finite differences of the length itself, found pair by pair.
+// The gradient of the contour's length against finite differences of the length itself, found pair
+// by pair.
 
 #include "taut/contact/contour_gradient.h"
 
@@ -21,13 +22,17 @@ struct Crossing {
   explicit Crossing(unsigned seed) {
     std::mt19937 generator(seed);
     std::uniform_real_distribution<double> u(-0.2, 0.2);
-    const TriangleMesh a = make_grid({7, 6, Vec3(-3.1, -2.4, 0), Vec3(6, 0.3, 0.4), Vec3(0.2, 5, 1.5)});
-    const TriangleMesh b = make_grid({6, 8, Vec3(-2.2, -3.3, -1.2), Vec3(5, 0.2, 3.1), Vec3(0.3, 7, -0.5)});
+    const TriangleMesh a =
+        make_grid({7, 6, Vec3(-3.1, -2.4, 0), Vec3(6, 0.3, 0.4), Vec3(0.2, 5, 1.5)});
+    const TriangleMesh b =
+        make_grid({6, 8, Vec3(-2.2, -3.3, -1.2), Vec3(5, 0.2, 3.1), Vec3(0.3, 7, -0.5)});
     for (const TriangleMesh* mesh : {&a, &b})
-      for (const Vec3& p : mesh->positions) x.push_back(p + Vec3(u(generator), u(generator), u(generator)));
+      for (const Vec3& p : mesh->positions)
+        x.push_back(p + Vec3(u(generator), u(generator), u(generator)));
     second = static_cast<Index>(a.positions.size());
-    surface =
-        join_surfaces(std::vector<SurfacePart>{{second, a.triangles, false}, {static_cast<Index>(b.positions.size()), b.triangles, false}});
+    surface = join_surfaces(
+        std::vector<SurfacePart>{{second, a.triangles, false},
+                                 {static_cast<Index>(b.positions.size()), b.triangles, false}});
   }
 
   // Where the edge p q goes through the triangle's plane.
@@ -46,7 +51,8 @@ struct Crossing {
           const Vec3 n = (x[face[1]] - x[face[0]]).cross(x[face[2]] - x[face[0]]);
           for (int k = 0; k < 3; ++k) {
             const Vec3 &p = x[edges[k]], &q = x[edges[(k + 1) % 3]];
-            if (segment_meets_triangle(p, q, x[face[0]], x[face[1]], x[face[2]]).meets) ends.push_back(crossing(p, q, x[face[0]], n));
+            if (segment_meets_triangle(p, q, x[face[0]], x[face[1]], x[face[2]]).meets)
+              ends.push_back(crossing(p, q, x[face[0]], n));
           }
         }
         if (ends.size() == 2) length += (ends[1] - ends[0]).norm();
@@ -81,7 +87,9 @@ TEST(ContourGradient, AgreesWithFiniteDifferencesOfTheLength) {
         for (Index i = 0; i < crossing.second; ++i) moved.x[i][c] += side ? step : -step;
         length[side] = moved.contour_length();
       }
-      EXPECT_NEAR((length[1] - length[0]) / (2 * step), -direction[c], 1e-6 * (1 + direction.norm())) << "seed " << seed << " axis " << c;
+      EXPECT_NEAR((length[1] - length[0]) / (2 * step), -direction[c],
+                  1e-6 * (1 + direction.norm()))
+          << "seed " << seed << " axis " << c;
     }
   }
 }

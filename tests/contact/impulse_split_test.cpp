@@ -32,7 +32,8 @@ TEST(SplitImpulse, agreesWithLeastSquares) {
 }
 
 TEST(SplitImpulse, parallelNormalsCarryItOnce) {
-  const std::vector<Vec3> normals = {Vec3::UnitZ(), Vec3::UnitZ(), Vec3(0, 0.6, 0.8), -Vec3::UnitZ()};
+  const std::vector<Vec3> normals = {Vec3::UnitZ(), Vec3::UnitZ(), Vec3(0, 0.6, 0.8),
+                                     -Vec3::UnitZ()};
   std::vector<double> lambda(4, 7.0);
   const Vec3 tangential = split_impulse(normals, Vec3(1, 3, 10), lambda);
   EXPECT_NEAR(lambda[0], 6.0, 1e-14);

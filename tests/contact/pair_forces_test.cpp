@@ -10,7 +10,8 @@
 namespace taut {
 namespace {
 
-ContactRow row_of(const std::array<Index, 4>& node, double lambda, const Vec3& normal, const Vec3& tangential = Vec3::Zero()) {
+ContactRow row_of(const std::array<Index, 4>& node, double lambda, const Vec3& normal,
+                  const Vec3& tangential = Vec3::Zero()) {
   ContactRow row;
   row.node = node;
   row.lambda = lambda;
@@ -21,8 +22,10 @@ ContactRow row_of(const std::array<Index, 4>& node, double lambda, const Vec3& n
 }
 
 TEST(PairForces, AreImpulsesOverTheStepSquared) {
-  const std::vector<ContactRow> rows{row_of({7, 1, 2, 3}, 3e-6, Vec3::UnitZ(), Vec3(4e-6, 0, 0)), row_of({2, 3, 4, 5}, 1e-6, Vec3::UnitX()),
-                                     row_of({2, 3, 4, 6}, 0.0, Vec3::UnitX()), row_of({5, -1, -1, -1}, 1.0, Vec3::UnitZ())};
+  const std::vector<ContactRow> rows{row_of({7, 1, 2, 3}, 3e-6, Vec3::UnitZ(), Vec3(4e-6, 0, 0)),
+                                     row_of({2, 3, 4, 5}, 1e-6, Vec3::UnitX()),
+                                     row_of({2, 3, 4, 6}, 0.0, Vec3::UnitX()),
+                                     row_of({5, -1, -1, -1}, 1.0, Vec3::UnitZ())};
   const std::vector<PairForce> list = forces_of(rows, 1e-3, 8);
   ASSERT_EQ(list.size(), 2u) << "what pushes, and not against a plane";
   EXPECT_TRUE(std::ranges::is_sorted(list, {}, [](const PairForce& f) { return f.node[0]; }));
@@ -34,7 +37,8 @@ TEST(PairForces, AreImpulsesOverTheStepSquared) {
 }
 
 TEST(PairForces, OfSeveralRowsOfAPairAreAdded) {
-  const std::vector<ContactRow> rows{row_of({1, 2, 3, 4}, 2.0, Vec3::UnitZ()), row_of({0, 2, 3, 4}, 1.0, Vec3::UnitZ()),
+  const std::vector<ContactRow> rows{row_of({1, 2, 3, 4}, 2.0, Vec3::UnitZ()),
+                                     row_of({0, 2, 3, 4}, 1.0, Vec3::UnitZ()),
                                      row_of({1, 2, 3, 4}, 5.0, Vec3::UnitZ())};
   const std::vector<PairForce> list = forces_of(rows, 1.0, 5);
   EXPECT_EQ(PairForces(list, 5).of({1, 2, 3, 4}), Vec3(0, 0, 7));
@@ -45,7 +49,8 @@ TEST(PairForces, ManyRowsAreAllFound) {
   std::uniform_int_distribution<Index> vertex(0, 499);
   std::vector<ContactRow> rows;
   for (Index k = 0; k < 9000; ++k)
-    rows.push_back(row_of({vertex(random), vertex(random), vertex(random), 500 + k}, 1.0 + k, Vec3::UnitY()));
+    rows.push_back(
+        row_of({vertex(random), vertex(random), vertex(random), 500 + k}, 1.0 + k, Vec3::UnitY()));
   const std::vector<PairForce> list = forces_of(rows, 1.0, 10'000);
   const PairForces forces(list, 10'000);
   for (const ContactRow& row : rows) ASSERT_EQ(forces.of(row.node), Vec3(0, row.lambda, 0));
@@ -76,7 +81,9 @@ TEST(PairForces, NodesGetWhatTheirRowsBeginWith) {
   std::vector<std::uint8_t> moved(4);
   apply_impulses(rows, RowSlabs(vertices, x), x, moved);
   for (std::size_t k = 0; k < 4; ++k)
-    EXPECT_LT((x[k] - before[k] - inverse_mass[k] * rows[0].weight[k] * Vec3(0.5, 0, 1)).norm(), 1e-15) << k;
+    EXPECT_LT((x[k] - before[k] - inverse_mass[k] * rows[0].weight[k] * Vec3(0.5, 0, 1)).norm(),
+              1e-15)
+        << k;
   EXPECT_EQ(moved, (std::vector<std::uint8_t>{1, 1, 1, 0}));
   EXPECT_EQ(rows[0].pushed, Vec3(0.5, 0, 1)) << "what angular momentum is restored from";
 }

@@ -7,7 +7,8 @@
 namespace taut {
 namespace {
 
-const std::vector<CollisionBody> bodies{{"shirt"}, {"sheet"}, {"body", true, 0.0, 0.5}, {"chair", true, 5e-3, 0.6}};
+const std::vector<CollisionBody> bodies{
+    {"shirt"}, {"sheet"}, {"body", true, 0.0, 0.5}, {"chair", true, 5e-3, 0.6}};
 
 ContactOptions with(std::vector<ContactPair> pairs) {
   ContactOptions options;
@@ -34,7 +35,10 @@ TEST(PairLaws, WithoutPairsAClothHasTheScenesAndASolidItsOwn) {
 }
 
 TEST(PairLaws, APairGoesFirstAndSaysOnlyWhatItSays) {
-  const PairLaws laws(with({{"shirt", "shirt", 4e-4, -1.0}, {"sheet", "shirt", -1.0, 0.0}, {"shirt", "chair", 8e-3, 0.9}}), bodies);
+  const PairLaws laws(with({{"shirt", "shirt", 4e-4, -1.0},
+                            {"sheet", "shirt", -1.0, 0.0},
+                            {"shirt", "chair", 8e-3, 0.9}}),
+                      bodies);
   expect_law(laws, 0, 0, 4e-4, 0.3);
   expect_law(laws, 0, 1, 1e-3, 0.0);
   expect_law(laws, 1, 1, 1e-3, 0.3);

@@ -22,28 +22,35 @@ Found colliding_by_trial(const Soup& soup) {
   Found found;
   const auto attempt = [&](const CollisionPair& pair) {
     std::set<Index> nodes(pair.node.begin(), pair.node.end());
-    if (nodes.size() < 4 || (soup.surface.is_solid[pair.node[0]] && soup.surface.is_solid[pair.node[3]])) return;
+    if (nodes.size() < 4 ||
+        (soup.surface.is_solid[pair.node[0]] && soup.surface.is_solid[pair.node[3]]))
+      return;
     const double start = closest(pair, soup.x0).distance;
     CcdOptions options;
     options.minimum_separation = std::min(kept_apart, PairSearch::kept_share * start);
-    if (start > 0.0 && impact(pair, soup.x0, soup.x1, options).hit) found.emplace(pair.edges, pair.node);
+    if (start > 0.0 && impact(pair, soup.x0, soup.x1, options).hit)
+      found.emplace(pair.edges, pair.node);
   };
   for (Index t = 0; t < soup.surface.triangle_count(); ++t)
-    for (Index v = 0; v < soup.surface.vertices; ++v) attempt(pair_of(soup.surface, VertexTriangle{v, t}));
+    for (Index v = 0; v < soup.surface.vertices; ++v)
+      attempt(pair_of(soup.surface, VertexTriangle{v, t}));
   for (Index e = 0; e < soup.surface.edge_count(); ++e)
-    for (Index f = e + 1; f < soup.surface.edge_count(); ++f) attempt(pair_of(soup.surface, EdgeEdge{e, f}));
+    for (Index f = e + 1; f < soup.surface.edge_count(); ++f)
+      attempt(pair_of(soup.surface, EdgeEdge{e, f}));
   return found;
 }
 
 Found as_set(const std::vector<CollidingPair>& pairs) {
   Found found;
-  for (const CollidingPair& hit : pairs) EXPECT_TRUE(found.emplace(hit.pair.edges, hit.pair.node).second) << "a pair is reported twice";
+  for (const CollidingPair& hit : pairs)
+    EXPECT_TRUE(found.emplace(hit.pair.edges, hit.pair.node).second) << "a pair is reported twice";
   return found;
 }
 
 }  // namespace
 
-// One search serves a step: the ends change a little, or a lot at some nodes, again and again, and nothing gets lost.
+// One search serves a step: the ends change a little, or a lot at some nodes, again and again, and
+// nothing gets lost.
 TEST(PairSearch, FollowsTheEndsOfTheWay) {
   std::mt19937 random(5);
   Soup soup = test::make_soup(8, 9, 9, 12, 0.0, 0.03);
@@ -72,7 +79,8 @@ TEST(PairSearch, OnlyPairsWithAMovedNodeAreTestedAgain) {
   for (std::size_t v = 3; v < moved.size(); v += 7) moved[v] = 1;
   Found with_moved;
   for (const auto& pair : all)
-    if (std::ranges::any_of(pair.second, [&](Index v) { return moved[v] != 0; })) with_moved.insert(pair);
+    if (std::ranges::any_of(pair.second, [&](Index v) { return moved[v] != 0; }))
+      with_moved.insert(pair);
   EXPECT_FALSE(with_moved.empty());
   EXPECT_LT(with_moved.size(), all.size());
   EXPECT_EQ(as_set(search.colliding(soup.x0, soup.x1, kept_apart, moved, {})), with_moved);

@@ -1,6 +1,8 @@
 #pragma once
-// Free point masses under gravity, stepped by semi-implicit Euler with A = M: the smallest integrator that contact can be tested with.
-//   dv = S (b + f) / m + (I - S)(d / h - v),   b = h m g,   f = friction impulse,   j = (I - S)(m dv - b)
+// Free point masses under gravity, stepped by semi-implicit Euler with A = M: the smallest
+// integrator that contact can be tested with.
+//   dv = S (b + f) / m + (I - S)(d / h - v),   b = h m g,   f = friction impulse,   j = (I - S)(m
+//   dv - b)
 
 #include <gtest/gtest.h>
 
@@ -31,11 +33,13 @@ struct PointMasses {
       constraints = pins;
       contact.constrain(constraints);
       friction.assign(x.size(), Vec3::Zero());
-      if (!contact.impulses().empty()) friction.assign(contact.impulses().begin(), contact.impulses().end());
+      if (!contact.impulses().empty())
+        friction.assign(contact.impulses().begin(), contact.impulses().end());
       j.assign(x.size(), Vec3::Zero());
       for (Index i = 0; i < nodes(); ++i) {
         const Vec3 b = h * mass * gravity;
-        const Vec3 prescribed = constraints.displacement(i) / h - constraints.constrained_part(i, v[i]);
+        const Vec3 prescribed =
+            constraints.displacement(i) / h - constraints.constrained_part(i, v[i]);
         dv[i] = constraints.free_part(i, b + friction[i]) / mass + prescribed;
         j[i] = constraints.constrained_part(i, mass * dv[i] - b);
         end[i] = x[i] + h * (v[i] + dv[i]);

@@ -12,10 +12,11 @@ namespace taut {
 
 namespace {
 
-// A pair of closest points of two convex shapes is known by this: the planes through them, orthogonal to their connection, have all corners
-// of either shape on the far side. `slack` (m) is what rounding may add.
-void expect_between(const Vec3& from, const Vec3& to, std::initializer_list<Vec3> from_corners, std::initializer_list<Vec3> to_corners,
-                    double slack) {
+// A pair of closest points of two convex shapes is known by this: the planes through them,
+// orthogonal to their connection, have all corners of either shape on the far side. `slack` (m) is
+// what rounding may add.
+void expect_between(const Vec3& from, const Vec3& to, std::initializer_list<Vec3> from_corners,
+                    std::initializer_list<Vec3> to_corners, double slack) {
   const Vec3 connection = to - from;
   const double length = connection.norm();
   if (length <= slack) return;
@@ -41,10 +42,11 @@ void check_point_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec
     EXPECT_GT(found.normal.dot(p - q), (1 - 1e-6) * found.distance);
   }
   expect_between(q, p, {a, b, c}, {p}, slack);
-  EXPECT_NEAR(found.distance,
-              static_cast<double>(
-                  test::triangle_distance(p.cast<long double>(), a.cast<long double>(), b.cast<long double>(), c.cast<long double>())),
-              slack);
+  EXPECT_NEAR(
+      found.distance,
+      static_cast<double>(test::triangle_distance(p.cast<long double>(), a.cast<long double>(),
+                                                  b.cast<long double>(), c.cast<long double>())),
+      slack);
 }
 
 void check_edge_edge(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
@@ -60,7 +62,8 @@ void check_edge_edge(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
   expect_between(q, r, {c, d}, {a, b}, slack);
   EXPECT_NEAR(
       found.distance,
-      static_cast<double>(test::edge_distance(a.cast<long double>(), b.cast<long double>(), c.cast<long double>(), d.cast<long double>())),
+      static_cast<double>(test::edge_distance(a.cast<long double>(), b.cast<long double>(),
+                                              c.cast<long double>(), d.cast<long double>())),
       slack);
 }
 
@@ -71,9 +74,12 @@ std::array<Vec3, 4> four_points(std::mt19937& random, int kind, double scale) {
   for (Vec3& corner : x)
     corner = kind == 0 ? Vec3(uniform(random), uniform(random), uniform(random))
                        : Vec3(scale * grid(random), scale * grid(random), scale * grid(random));
-  if (kind == 2) x[3] = x[2] + 1e-9 * (x[3] - x[2]);                                        // a short side
-  if (kind == 3) x[3] = x[2] + (x[1] - x[0]) * 0.7 + 1e-12 * (x[3] - x[2]);                 // parallel edges
-  if (kind == 4) x[3] = x[1] + 0.4 * (x[2] - x[1]) + 1e-11 * scale * Vec3(1.0, -1.0, 0.5);  // a sliver
+  // a short side
+  if (kind == 2) x[3] = x[2] + 1e-9 * (x[3] - x[2]);
+  // parallel edges
+  if (kind == 3) x[3] = x[2] + (x[1] - x[0]) * 0.7 + 1e-12 * (x[3] - x[2]);
+  // a sliver
+  if (kind == 4) x[3] = x[1] + 0.4 * (x[2] - x[1]) + 1e-11 * scale * Vec3(1.0, -1.0, 0.5);
   return x;
 }
 
@@ -134,9 +140,11 @@ TEST(Proximity, NormalIsOrthogonalWhereTheGapIsLost) {
   const Vec3 a(0.1, 0.2, 0.3), b(0.7, 0.1, 0.4), c(0.3, 0.9, 0.2);
   const Vec3 n = (b - a).cross(c - a).normalized();
   for (const double gap : {1e-9, 1e-13, 1e-15}) {
-    const PointTriangleProximity found = closest_point_triangle(Vec3((a + b + c) / 3.0 + gap * n), a, b, c);
+    const PointTriangleProximity found =
+        closest_point_triangle(Vec3((a + b + c) / 3.0 + gap * n), a, b, c);
     EXPECT_NEAR(std::abs(found.normal.dot(n)), 1.0, 1e-14);
-    const PointTriangleProximity at_side = closest_point_triangle(Vec3(0.5 * (a + b) + gap * n.cross(a - b).normalized()), a, b, c);
+    const PointTriangleProximity at_side =
+        closest_point_triangle(Vec3(0.5 * (a + b) + gap * n.cross(a - b).normalized()), a, b, c);
     EXPECT_NEAR(at_side.normal.dot(b - a), 0.0, 1e-15);
   }
 }

@@ -42,7 +42,8 @@ Vec3 linear(const Cloud& c, const std::vector<Vec3>& end) {
 
 Vec3 angular(const Cloud& c, const std::vector<Vec3>& end, const Vec3& about) {
   Vec3 sum = Vec3::Zero();
-  for (std::size_t i = 0; i < end.size(); ++i) sum += c.mass[i] * (c.x0[i] - about).cross(end[i] - c.x0[i]);
+  for (std::size_t i = 0; i < end.size(); ++i)
+    sum += c.mass[i] * (c.x0[i] - about).cross(end[i] - c.x0[i]);
   return sum;
 }
 
@@ -65,7 +66,8 @@ TEST(RigidMotion, KeepsLinearAndAngularMomentumToRounding) {
       EXPECT_LE((linear(c, end) - linear(c, c.x1)).norm(), 1e-13 * scale);
       EXPECT_LE((angular(c, end, c.x0[0]) - angular(c, c.x1, c.x0[0])).norm(),
                 1e-13 * scale * 0.02 + 1e-12 * angular(c, c.x1, motion.from).norm());
-      for (std::size_t i = 1; i < end.size(); ++i) EXPECT_NEAR((end[i] - end[0]).norm(), (c.x0[i] - c.x0[0]).norm(), 1e-15) << "not rigid";
+      for (std::size_t i = 1; i < end.size(); ++i)
+        EXPECT_NEAR((end[i] - end[0]).norm(), (c.x0[i] - c.x0[0]).norm(), 1e-15) << "not rigid";
     }
   EXPECT_GT(largest_turn, 0.3) << "no cloud that turned";
 }
@@ -88,7 +90,8 @@ TEST(RigidMotion, FindsTheTurnOfARigidCloud) {
 TEST(RigidMotion, ThatTurnsTooFarIsCutAndSaysSo) {
   Cloud c = random_cloud(3, 8, 0.0);
   const Vec3 middle = momentum_keeping_motion(c.x0, c.x0, c.mass).from;
-  for (std::size_t i = 0; i < c.x0.size(); ++i) c.x1[i] = c.x0[i] + Vec3(0, 0, 5).cross(c.x0[i] - middle);
+  for (std::size_t i = 0; i < c.x0.size(); ++i)
+    c.x1[i] = c.x0[i] + Vec3(0, 0, 5).cross(c.x0[i] - middle);
   const RigidMotion motion = momentum_keeping_motion(c.x0, c.x1, c.mass);
   EXPECT_FALSE(motion.exact);
   EXPECT_NEAR(motion.angle(), 1.0, 1e-9);
@@ -124,7 +127,8 @@ TEST(RigidZones, MergeWhenTheyShareAPairAndHoldersJoinNone) {
   for (int i = 0; i < 10; ++i) x0.push_back(0.01 * random_vector(generator));
   for (int i = 0; i < 10; ++i) x1.push_back(x0[i] + 0.001 * random_vector(generator));
   RigidZones zones(mass, held);
-  const std::vector<Index> first{0, 1, 2, 4}, second{5, 6, 7, 4}, bridge{2, 5, 8, 9}, held_only{4, 4, 4, 4};
+  const std::vector<Index> first{0, 1, 2, 4}, second{5, 6, 7, 4}, bridge{2, 5, 8, 9},
+      held_only{4, 4, 4, 4};
   EXPECT_TRUE(zones.join(first, x0, x1));
   EXPECT_FALSE(zones.join(first, x0, x1));
   EXPECT_TRUE(zones.join(second, x0, x1));
@@ -139,7 +143,8 @@ TEST(RigidZones, MergeWhenTheyShareAPairAndHoldersJoinNone) {
   EXPECT_EQ(zones.move(x0, x1, 1e-9, moved), nullptr);
   EXPECT_EQ(x1[4], before[4]);
   EXPECT_EQ(x1[3], before[3]);
-  EXPECT_LE((x1[0] - x0[0] - (x1[9] - x0[9])).norm(), 1e-16) << "carried by one holder: a translation";
+  EXPECT_LE((x1[0] - x0[0] - (x1[9] - x0[9])).norm(), 1e-16)
+      << "carried by one holder: a translation";
   EXPECT_LE((x1[0] - x0[0] - (x1[4] - x0[4])).norm(), 1e-16);
 }
 

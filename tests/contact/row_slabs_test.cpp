@@ -11,7 +11,8 @@
 namespace taut {
 namespace {
 
-// Points in a long box and rows between random close ones, some of one point against a plane, some that span nearly the whole box.
+// Points in a long box and rows between random close ones, some of one point against a plane, some
+// that span nearly the whole box.
 struct Heap {
   std::vector<Vec3> x0, x1;
   std::vector<double> mass, inverse_mass;
@@ -62,7 +63,8 @@ struct Heap {
     rows = placed;
     std::vector<std::uint8_t> awake(x.size(), 1), moved(x.size(), 0);
     satisfy_rows(rows, slabs, x, awake, moved, iterations, tolerance);
-    for (std::size_t i = 0; i < x.size(); ++i) EXPECT_TRUE(moved[i] || x[i] == x1[i]) << "point " << i;
+    for (std::size_t i = 0; i < x.size(); ++i)
+      EXPECT_TRUE(moved[i] || x[i] == x1[i]) << "point " << i;
     return x;
   }
 };
@@ -73,7 +75,8 @@ TEST(RowSlabs, HoldEachRowOnceAndGroupsOfAPhaseShareNothing) {
     const std::vector<RowSlabs::Vertices> vertices = heap.vertices();
     const RowSlabs slabs(vertices, heap.x1);
     std::vector<Index> row_at(vertices.size(), -1);
-    for (std::size_t k = 0; k < vertices.size(); ++k) row_at[slabs.place(k)] = static_cast<Index>(k);
+    for (std::size_t k = 0; k < vertices.size(); ++k)
+      row_at[slabs.place(k)] = static_cast<Index>(k);
     EXPECT_EQ(slabs.start(0), 0);
     EXPECT_EQ(slabs.start(RowSlabs::groups), count);
     for (Index phase = 0; phase < RowSlabs::phases; ++phase) {
@@ -81,10 +84,12 @@ TEST(RowSlabs, HoldEachRowOnceAndGroupsOfAPhaseShareNothing) {
       for (Index g = slabs.first_group(phase); g < slabs.first_group(phase + 1); ++g) {
         for (Index place = slabs.start(g); place < slabs.start(g + 1); ++place) {
           ASSERT_GE(row_at[place], 0) << "two rows in one place";
-          EXPECT_TRUE(place == slabs.start(g) || row_at[place] > row_at[place - 1]) << "not in their own order";
+          EXPECT_TRUE(place == slabs.start(g) || row_at[place] > row_at[place - 1])
+              << "not in their own order";
           for (const Index node : vertices[row_at[place]]) {
             if (node < 0) continue;
-            ASSERT_TRUE(owner[node] < 0 || owner[node] == g) << "groups " << owner[node] << " and " << g << " share vertex " << node;
+            ASSERT_TRUE(owner[node] < 0 || owner[node] == g)
+                << "groups " << owner[node] << " and " << g << " share vertex " << node;
             owner[node] = g;
           }
         }
@@ -93,9 +98,11 @@ TEST(RowSlabs, HoldEachRowOnceAndGroupsOfAPhaseShareNothing) {
     EXPECT_EQ(slabs.start(RowSlabs::groups - 1), count) << "none of them comes later";
     if (count < RowSlabs::fewest_rows) continue;
     EXPECT_GT(slabs.start(RowSlabs::slabs), count / 2);
-    for (Index g = 0; g < RowSlabs::slabs; ++g) EXPECT_LT(slabs.start(g + 1) - slabs.start(g), 2 * count / RowSlabs::slabs) << "slab " << g;
+    for (Index g = 0; g < RowSlabs::slabs; ++g)
+      EXPECT_LT(slabs.start(g + 1) - slabs.start(g), 2 * count / RowSlabs::slabs) << "slab " << g;
     for (Index phase = 1; phase < RowSlabs::phases - 1; ++phase)
-      EXPECT_GT(slabs.start(slabs.first_group(phase) + 1), slabs.start(slabs.first_group(phase))) << "phase " << phase << " is not tested";
+      EXPECT_GT(slabs.start(slabs.first_group(phase) + 1), slabs.start(slabs.first_group(phase)))
+          << "phase " << phase << " is not tested";
   }
 }
 
@@ -108,7 +115,8 @@ TEST(RowSlabs, AllPointsInOnePlaceAndPointsNowhereAreNoTrouble) {
   EXPECT_EQ(RowSlabs(heap.vertices(), heap.x1).start(RowSlabs::groups), 3000);
 }
 
-// What Gauss-Seidel aims at: x1 moves least in the norm of the masses, so that rows hold and only those that are just met push.
+// What Gauss-Seidel aims at: x1 moves least in the norm of the masses, so that rows hold and only
+// those that are just met push.
 TEST(SatisfyRows, MeetsTheConditionsOfTheLeastMotion) {
   for (const Index count : {Index{300}, Index{2000}}) {  // one group; all phases
     Heap heap(6000, count, 3);
@@ -125,17 +133,21 @@ TEST(SatisfyRows, MeetsTheConditionsOfTheLeastMotion) {
         EXPECT_LT(slack, 1e-10);
         ++pushing;
       }
-      for (std::size_t k = 0; k < 4 && row.node[k] >= 0; ++k) pushed[row.node[k]] += row.share[k] * row.lambda * row.normal;
+      for (std::size_t k = 0; k < 4 && row.node[k] >= 0; ++k)
+        pushed[row.node[k]] += row.share[k] * row.lambda * row.normal;
     }
     EXPECT_GT(pushing, count / 10);
-    for (std::size_t i = 0; i < x.size(); ++i) ASSERT_LT((x[i] - heap.x1[i] - pushed[i]).norm(), 1e-12);
+    for (std::size_t i = 0; i < x.size(); ++i)
+      ASSERT_LT((x[i] - heap.x1[i] - pushed[i]).norm(), 1e-12);
   }
 }
 
 TEST(SatisfyRows, FrictionStaysInItsConeAndMomentumIsKept) {
   Heap heap(3000, 5000, 4);
   std::erase_if(heap.rows, [&](const ContactRow& row) {
-    return row.node[1] < 0 || std::ranges::any_of(row.node, [&](Index node) { return heap.inverse_mass[node] == 0.0; });
+    return row.node[1] < 0 ||
+           std::ranges::any_of(
+               row.node, [&](Index node) { return heap.inverse_mass[node] == 0.0; });
   });
   const std::vector<Vec3> x = heap.met(20, 1e-7);
   Vec3 change = Vec3::Zero();
@@ -148,7 +160,8 @@ TEST(SatisfyRows, FrictionStaysInItsConeAndMomentumIsKept) {
   EXPECT_LT(change.norm(), 1e-12 * size);
   int sliding = 0;
   for (const ContactRow& row : heap.rows) {
-    EXPECT_LE(row.tangential.norm(), row.friction * row.lambda + 2e-8 / row.inverse_mass) << "changes of a tenth of 1e-7 are not made";
+    EXPECT_LE(row.tangential.norm(), row.friction * row.lambda + 2e-8 / row.inverse_mass)
+        << "changes of a tenth of 1e-7 are not made";
     EXPECT_NEAR(row.tangential.dot(row.normal), 0.0, 1e-12);
     sliding += row.tangential.norm() > 0.0;
   }

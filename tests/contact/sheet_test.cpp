@@ -13,12 +13,14 @@ double mean_passes(const SpringSheet& sheet) {
   return std::accumulate(sheet.passes.begin(), sheet.passes.end(), 0.0) / sheet.passes.size();
 }
 
-// The paper's Figure 3 in small: a sheet hung by two corners, hit by a ball of radius 0.2 m at 3 m/s.
+// The paper's Figure 3 in small: a sheet hung by two corners, hit by a ball of radius 0.2 m at 3
+// m/s.
 class HitSheet : public testing::TestWithParam<double> {};
 
 TEST_P(HitSheet, isNeverInsideTheBall) {
   const Index side = 21;
-  SpringSheet sheet(side, GetParam(), [](double u, double w) { return Vec3(u - 0.5, 0.0, w - 0.5); });
+  SpringSheet sheet(side, GetParam(),
+                    [](double u, double w) { return Vec3(u - 0.5, 0.0, w - 0.5); });
   sheet.pins.fix(sheet.node(side - 1, 0), Vec3::Zero());
   sheet.pins.fix(sheet.node(side - 1, side - 1), Vec3::Zero());
   Solid ball = test::sphere(0.2, 0.3, Vec3(0.0, -0.27, 0.0));
@@ -29,7 +31,8 @@ TEST_P(HitSheet, isNeverInsideTheBall) {
     sheet.step(contact, 6.67e-3);
     touches = std::max(touches, contact.contacts());
     moved += contact.counts().moved;
-    for (const Vec3& x : sheet.x) ASSERT_GT(test::gap_of(ball, sheet.t, x), -2.5e-4 * ball.radius) << "step " << k;
+    for (const Vec3& x : sheet.x)
+      ASSERT_GT(test::gap_of(ball, sheet.t, x), -2.5e-4 * ball.radius) << "step " << k;
   }
   EXPECT_GT(touches, 20);
   EXPECT_LE(moved, 2);  // of 40 steps: at the pass limit a node may still be inside, and is moved
@@ -41,13 +44,15 @@ INSTANTIATE_TEST_SUITE_P(bothEndsOfStiffness, HitSheet, testing::Values(60.0, 60
 
 TEST(DrapedSheet, restsOnABallWhoseFrictionHolds) {
   const Index side = 15;
-  SpringSheet sheet(side, 60.0, [](double u, double w) { return Vec3(0.6 * (u - 0.5), 0.6 * (w - 0.5), 0.21); });
+  SpringSheet sheet(
+      side, 60.0, [](double u, double w) { return Vec3(0.6 * (u - 0.5), 0.6 * (w - 0.5), 0.21); });
   sheet.drag = 1e-4;
   const Solid ball = test::sphere(0.2, 2.0);
   SolidContact contact({ball}, side * side, {});
   for (int k = 0; k < 300; ++k) {
     sheet.step(contact, 5e-3);
-    for (const Vec3& x : sheet.x) ASSERT_GT(test::gap_of(ball, sheet.t, x), -2.5e-4 * ball.radius) << "step " << k;
+    for (const Vec3& x : sheet.x)
+      ASSERT_GT(test::gap_of(ball, sheet.t, x), -2.5e-4 * ball.radius) << "step " << k;
   }
   // Most of what touches is held, it does not slip off, and the last steps need little.
   EXPECT_GT(contact.contacts(), 100);

@@ -41,18 +41,21 @@ Solid thick(Solid solid, double thickness) {
   return solid;
 }
 
-INSTANTIATE_TEST_SUITE_P(eachSolid, RestingNode,
-                         testing::Values(std::pair(test::plane(Vec3::UnitZ()), Vec3(0.3, -2.0, 0.0)),
-                                         std::pair(test::sphere(0.2), Vec3(0.0, 0.0, 0.2)),
-                                         std::pair(test::box(Vec3(1, 2, 3)), Vec3(0.2, 0.1, 1.5)),
-                                         std::pair(test::cylinder(0.3, 0.8), Vec3(0.1, 0.1, 0.4)),
-                                         std::pair(thick(test::sphere(0.2), 0.01), Vec3(0.0, 0.0, 0.21)),
-                                         std::pair(thick(test::box(Vec3(1, 2, 3)), 0.02), Vec3(0.2, 0.1, 1.52))));
+INSTANTIATE_TEST_SUITE_P(
+    eachSolid, RestingNode,
+    testing::Values(std::pair(test::plane(Vec3::UnitZ()), Vec3(0.3, -2.0, 0.0)),
+                    std::pair(test::sphere(0.2), Vec3(0.0, 0.0, 0.2)),
+                    std::pair(test::box(Vec3(1, 2, 3)), Vec3(0.2, 0.1, 1.5)),
+                    std::pair(test::cylinder(0.3, 0.8), Vec3(0.1, 0.1, 0.4)),
+                    std::pair(thick(test::sphere(0.2), 0.01), Vec3(0.0, 0.0, 0.21)),
+                    std::pair(thick(test::box(Vec3(1, 2, 3)), 0.02), Vec3(0.2, 0.1, 1.52))));
 
-// Incline of angle theta; a block of nodes at rest on it, or sliding down with acceleration g (sin - mu cos). The discrete sum of
-// semi-implicit Euler is exact: v_n = n h a, x_n = a h² n (n + 1) / 2.
+// Incline of angle theta; a block of nodes at rest on it, or sliding down with acceleration g (sin
+// - mu cos). The discrete sum of semi-implicit Euler is exact: v_n = n h a, x_n = a h² n (n + 1) /
+//   2.
 void slide_down(double theta, double mu, std::vector<Vec3> offsets) {
-  const Vec3 normal(std::sin(theta), 0.0, std::cos(theta)), down(std::cos(theta), 0.0, -std::sin(theta));
+  const Vec3 normal(std::sin(theta), 0.0, std::cos(theta)),
+      down(std::cos(theta), 0.0, -std::sin(theta));
   for (Vec3& x : offsets) x = x.x() * down + x.y() * Vec3::UnitY();
   const Index nodes = static_cast<Index>(offsets.size());
   PointMasses masses(offsets);
@@ -64,7 +67,8 @@ void slide_down(double theta, double mu, std::vector<Vec3> offsets) {
   const double tolerance = 1e-11 + (a < 0.05 * g ? a * h * h * steps : 0.0);
   for (Index i = 0; i < nodes; ++i) {
     const Vec3 moved = masses.x[i] - offsets[i];
-    EXPECT_LT((moved - 0.5 * a * h * h * steps * (steps + 1) * down).norm(), tolerance) << "node " << i << ", mu " << mu;
+    EXPECT_LT((moved - 0.5 * a * h * h * steps * (steps + 1) * down).norm(), tolerance)
+        << "node " << i << ", mu " << mu;
     EXPECT_NEAR(masses.j[i].dot(normal), masses.mass * g * h * std::cos(theta), 1e-14);
   }
   EXPECT_EQ(contact.sticking(), std::tan(theta) <= mu ? nodes : 0);
@@ -73,7 +77,8 @@ void slide_down(double theta, double mu, std::vector<Vec3> offsets) {
 
 TEST(Incline, nodeSlidesOrSticksByTheFrictionAngle) {
   const double theta = 0.5;
-  for (const double mu : {0.0, 0.1, 0.3, std::tan(theta) * (1 - 1e-6), std::tan(theta) * (1 + 1e-6), 2.0})
+  for (const double mu :
+       {0.0, 0.1, 0.3, std::tan(theta) * (1 - 1e-6), std::tan(theta) * (1 + 1e-6), 2.0})
     slide_down(theta, mu, {Vec3::Zero()});
 }
 
@@ -86,30 +91,37 @@ TEST(Incline, blockOfNodes) {
 
 TEST(Incline, nodePushedUpwardsStopsAndStays) {
   const double theta = 0.3, mu = 0.5, speed = 1.0;
-  const Vec3 normal(std::sin(theta), 0.0, std::cos(theta)), up(-std::cos(theta), 0.0, std::sin(theta));
+  const Vec3 normal(std::sin(theta), 0.0, std::cos(theta)),
+      up(-std::cos(theta), 0.0, std::sin(theta));
   PointMasses masses({Vec3::Zero()}, speed * up + 0.0 * normal);
   SolidContact contact = contact_with({test::plane(normal, mu)});
   masses.run(contact, h, 400);
   const double a = g * (std::sin(theta) + mu * std::cos(theta));
   const double path = masses.x[0].dot(up);
-  EXPECT_NEAR(path, speed * speed / (2 * a), speed * h);  // Euler and the stop within a step: first order
+  // Euler and the stop within a step: first order
+  EXPECT_NEAR(path, speed * speed / (2 * a), speed * h);
   EXPECT_LT(masses.v[0].norm(), 1e-12);
   EXPECT_EQ(contact.sticking(), 1);
   EXPECT_LE(masses.most_passes, 3);
 }
 
 TEST(Incline, crosswiseSlideLosesItsCrosswisePart) {
-  // Friction opposes the whole velocity, so a node pushed across the slope turns down the slope: dv_y/dt = -mu g cos v_y / |v|.
+  // Friction opposes the whole velocity, so a node pushed across the slope turns down the slope:
+  // dv_y/dt = -mu g cos v_y / |v|.
   const double theta = 0.6, mu = 0.3;
-  const Vec3 normal(std::sin(theta), 0.0, std::cos(theta)), down(std::cos(theta), 0.0, -std::sin(theta));
+  const Vec3 normal(std::sin(theta), 0.0, std::cos(theta)),
+      down(std::cos(theta), 0.0, -std::sin(theta));
   const double small = 1e-4;
   PointMasses masses({Vec3::Zero()}, Vec3(0, 1, 0));
   SolidContact contact = contact_with({test::plane(normal, mu)});
   masses.run(contact, small, 5000);
   Vec2 velocity(0.0, 1.0);  // the same by an ODE solver: midpoint rule with a tenth of the step
   const double fine = 1e-5;
-  const auto acceleration = [&](const Vec2& u) { return Vec2(Vec2(g * std::sin(theta), 0.0) - mu * g * std::cos(theta) * u.normalized()); };
-  for (int k = 0; k < 50000; ++k) velocity += fine * acceleration(velocity + 0.5 * fine * acceleration(velocity));
+  const auto acceleration = [&](const Vec2& u) {
+    return Vec2(Vec2(g * std::sin(theta), 0.0) - mu * g * std::cos(theta) * u.normalized());
+  };
+  for (int k = 0; k < 50000; ++k)
+    velocity += fine * acceleration(velocity + 0.5 * fine * acceleration(velocity));
   EXPECT_NEAR(masses.v[0].dot(down), velocity.x(), 2e-3);
   EXPECT_NEAR(masses.v[0].y(), velocity.y(), 2e-3);
 }
@@ -128,7 +140,8 @@ TEST(MovingFloor, frictionCarriesAndNoFrictionDoesNot) {
       EXPECT_LT((masses.x[0] - Vec3(0.1, 0.2, 0.1 * T)).norm(), 1e-12);
       continue;
     }
-    // It slips until Coulomb's friction has given it the floor's speed u: it lags behind by u² / (2 mu g), Euler's first order aside.
+    // It slips until Coulomb's friction has given it the floor's speed u: it lags behind by u² / (2
+    // mu g), Euler's first order aside.
     const double u = std::hypot(0.4, 0.2);
     const Vec3 behind = Vec3(0.1, 0.2, 0.0) + T * floor.velocity - masses.x[0];
     EXPECT_NEAR(behind.norm(), u * u / (2 * mu * g), u * h);
@@ -149,7 +162,8 @@ TEST(MovingFloor, pullingAwayLetsGo) {
   EXPECT_NEAR(masses.x[0].z(), 0.0, 1e-14);
   masses.run(contact, h, 10);
   EXPECT_EQ(contact.contacts(), 0);
-  EXPECT_NEAR(masses.x[0].z(), -0.5 * g * h * h * 10 * 11, 1e-12);  // free fall from the first such step on
+  // free fall from the first such step on
+  EXPECT_NEAR(masses.x[0].z(), -0.5 * g * h * h * 10 * 11, 1e-12);
 }
 
 TEST(MovingFloor, touchingWithoutForceStays) {
@@ -173,7 +187,8 @@ TEST(RotatingSphere, frictionCarriesNodeRoundItsCircle) {
   const double turn = 2 * std::numbers::pi / omega / steps;
   for (int k = 1; k <= steps; ++k) {
     masses.step(contact, turn);
-    const Vec3 expected = ball.initial.translation + Eigen::AngleAxisd(omega * k * turn, Vec3::UnitZ()) * arm;
+    const Vec3 expected =
+        ball.initial.translation + Eigen::AngleAxisd(omega * k * turn, Vec3::UnitZ()) * arm;
     ASSERT_LT((masses.x[0] - expected).norm(), 1e-10) << "step " << k;
     ASSERT_LE(contact.passes(), k == 1 ? 2 : 1);
   }
@@ -193,7 +208,8 @@ TEST(RotatingSphere, oppositeTurnAndTranslationTogether) {
 TEST(ThrownNodes, neverEndInside) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  std::vector<Solid> shapes = {test::sphere(0.2), test::box(Vec3(0.4, 0.3, 0.02)), test::cylinder(0.2, 0.3),
+  std::vector<Solid> shapes = {test::sphere(0.2), test::box(Vec3(0.4, 0.3, 0.02)),
+                               test::cylinder(0.2, 0.3),
                                thick(test::box(Vec3(0.4, 0.3, 0.4)), 0.01)};
   for (Solid& solid : shapes)
     for (const double mu : {0.0, 0.3})
@@ -203,7 +219,8 @@ TEST(ThrownNodes, neverEndInside) {
         std::vector<Vec3> starts;
         PointMasses masses({});
         for (int k = 0; k < 400; ++k) {
-          const Vec3 from = 0.6 * Vec3(uniform(random), uniform(random), uniform(random)).normalized();
+          const Vec3 from =
+              0.6 * Vec3(uniform(random), uniform(random), uniform(random)).normalized();
           const Vec3 aim = 0.2 * Vec3(uniform(random), uniform(random), uniform(random));
           masses.x.push_back(from);
           masses.v.push_back(4.0 * (aim - from).normalized());
@@ -217,12 +234,17 @@ TEST(ThrownNodes, neverEndInside) {
           touches += contact.contacts();
           for (Index i = 0; i < masses.nodes(); ++i) {
             // The tolerance stated in solid_contact.h: 2e-4 of the size.
-            ASSERT_GT(test::gap_of(solid, masses.t, masses.x[i]), -2.5e-4 * 0.2) << "node " << i << ", step " << k;
+            ASSERT_GT(test::gap_of(solid, masses.t, masses.x[i]), -2.5e-4 * 0.2)
+                << "node " << i << ", step " << k;
             // Nor does it jump through the plate's middle.
             if (solid.size.z() > 0.05) continue;
-            const Vec3 q0 = solid.pose(masses.t - 6.67e-3).to_local(before[i]), q1 = solid.pose(masses.t).to_local(masses.x[i]);
-            const auto over_middle = [](const Vec3& q) { return std::abs(q.x()) < 0.17 && std::abs(q.y()) < 0.12; };
-            ASSERT_FALSE(over_middle(q0) && over_middle(q1) && q0.z() * q1.z() < 0.0) << "node " << i << ", step " << k;
+            const Vec3 q0 = solid.pose(masses.t - 6.67e-3).to_local(before[i]),
+                       q1 = solid.pose(masses.t).to_local(masses.x[i]);
+            const auto over_middle = [](const Vec3& q) {
+              return std::abs(q.x()) < 0.17 && std::abs(q.y()) < 0.12;
+            };
+            ASSERT_FALSE(over_middle(q0) && over_middle(q1) && q0.z() * q1.z() < 0.0)
+                << "node " << i << ", step " << k;
           }
         }
         EXPECT_GT(touches, 500);
@@ -235,7 +257,8 @@ TEST(ThrownNode, stopsAndStaysWithGreatFriction) {
   masses.gravity.setZero();
   SolidContact contact = contact_with({test::plane(Vec3::UnitZ(), 1e6)});
   masses.run(contact, 0.03, 20);
-  EXPECT_LT((masses.x[0] - Vec3(0.1, 0, 0)).norm(), 1e-9);  // where its path met the floor, whatever the step
+  // where its path met the floor, whatever the step
+  EXPECT_LT((masses.x[0] - Vec3(0.1, 0, 0)).norm(), 1e-9);
 }
 
 TEST(ThrownNode, coulombTakesMuTimesTheNormalImpulse) {
@@ -250,8 +273,9 @@ TEST(ThrownNode, coulombTakesMuTimesTheNormalImpulse) {
   EXPECT_NEAR(masses.v[0].y() / masses.v[0].x(), 1.0 / 3.0, 1e-12);
 }
 
-// Two planes whose normals are 60 degrees apart make a valley along `valley`, tilted so that the node runs down it. The impulses follow
-// from statics: both normals share the load; friction along the valley is mu (lambda1 + lambda2).
+// Two planes whose normals are 60 degrees apart make a valley along `valley`, tilted so that the
+// node runs down it. The impulses follow from statics: both normals share the load; friction along
+// the valley is mu (lambda1 + lambda2).
 TEST(Valley, slidesAlongItByTheClosedForm) {
   const double tilt = 0.5;
   const Eigen::AngleAxisd turn(tilt, Vec3::UnitY());
@@ -265,13 +289,15 @@ TEST(Valley, slidesAlongItByTheClosedForm) {
     const double lambda = g * std::cos(tilt) / (2 * std::sqrt(0.75));  // of each, per mass
     const double a = std::max(0.0, g * std::sin(tilt) - 2 * mu * lambda);
     EXPECT_EQ(masses.constraints.ndof(0), a > 0.0 ? 1 : 0);
-    EXPECT_LT((masses.x[0] - 0.5 * a * h * h * steps * (steps + 1) * valley).norm(), 1e-11) << "mu " << mu;
+    EXPECT_LT((masses.x[0] - 0.5 * a * h * h * steps * (steps + 1) * valley).norm(), 1e-11)
+        << "mu " << mu;
     EXPECT_EQ(contact.contacts(), 2);
   }
 }
 
 TEST(Valley, oneSideLetsGoWhenItWouldPull) {
-  const Vec3 n1 = Vec3(0, std::sin(0.5), std::cos(0.5)), n2 = Vec3(0, -std::sin(0.5), std::cos(0.5));
+  const Vec3 n1 = Vec3(0, std::sin(0.5), std::cos(0.5)),
+             n2 = Vec3(0, -std::sin(0.5), std::cos(0.5));
   PointMasses masses({Vec3::Zero()});
   masses.gravity = Vec3(0, 8.0, -5.0);  // up along plane 2, away from plane 1: only plane 2 pushes
   SolidContact contact = contact_with({test::plane(n1), test::plane(n2)});
@@ -284,7 +310,8 @@ TEST(Valley, oneSideLetsGoWhenItWouldPull) {
 }
 
 TEST(Corner, ofThreePlanesLeavesNoFreedom) {
-  const Vec3 n[3] = {Vec3(1, 0.2, 1).normalized(), Vec3(-1, 1, 1).normalized(), Vec3(-0.3, -1, 1).normalized()};
+  const Vec3 n[3] = {Vec3(1, 0.2, 1).normalized(), Vec3(-1, 1, 1).normalized(),
+                     Vec3(-0.3, -1, 1).normalized()};
   PointMasses masses({Vec3(0, 0, 0.3)}, Vec3(0.1, 0.2, 0.0));
   SolidContact contact = contact_with({test::plane(n[0]), test::plane(n[1]), test::plane(n[2])});
   masses.run(contact, h, 1000);
@@ -298,20 +325,23 @@ TEST(Pins, pinnedNodeIsNeverAContactAndPartlyPinnedOneObeysBoth) {
   masses.pins.fix(0, Vec3::Zero());
   masses.pins.constrain(1, Vec3::UnitX(), 0.0);
   const Vec3 normal = Vec3(1, 1, 2).normalized();
-  SolidContact contact = contact_with({test::plane(normal, 0.0, Vec3(0, 0, 0)), test::plane(normal, 0.0, Vec3(1, 0, 0))}, 2);
+  SolidContact contact = contact_with(
+      {test::plane(normal, 0.0, Vec3(0, 0, 0)), test::plane(normal, 0.0, Vec3(1, 0, 0))}, 2);
   masses.run(contact, h, 50);
   EXPECT_EQ(masses.x[0], Vec3(0, 0, 0));
   EXPECT_EQ(contact.contacts(), 1);
   EXPECT_EQ(masses.constraints.ndof(1), 1);
   // Node 1 slides on the line x = 1 of the second plane: direction (0, 2, -1).
   const Vec3 line = Vec3(0, 2, -1).normalized();
-  EXPECT_LT((masses.x[1] - Vec3(1, 0, 0) - 0.5 * line.z() * -g * h * h * 50 * 51 * line).norm(), 1e-12);
+  EXPECT_LT((masses.x[1] - Vec3(1, 0, 0) - 0.5 * line.z() * -g * h * h * 50 * 51 * line).norm(),
+            1e-12);
 }
 
 TEST(BoxOnFloor, nodeInTheAngleIsPushedAlong) {
   // A box moves along the floor and pushes a node before it; each solid is its own contact.
   Solid pusher = test::box(Vec3(0.2, 0.2, 0.2));
-  pusher.initial.translation = Vec3(-0.1, 0, 0.05);  // its lower face is under the floor, so that the node meets its side
+  // its lower face is under the floor, so that the node meets its side
+  pusher.initial.translation = Vec3(-0.1, 0, 0.05);
   pusher.velocity = Vec3(0.5, 0, 0);
   for (const double mu : {0.0, 0.3}) {
     pusher.friction = 0.0;
@@ -328,7 +358,8 @@ PointMasses rain(Index nodes) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform(-0.3, 0.3);
   std::vector<Vec3> start;
-  for (Index i = 0; i < nodes; ++i) start.emplace_back(uniform(random), uniform(random), 0.35 + 0.3 * uniform(random));
+  for (Index i = 0; i < nodes; ++i)
+    start.emplace_back(uniform(random), uniform(random), 0.35 + 0.3 * uniform(random));
   return PointMasses(start, Vec3(0.2, 0.1, -1.0));
 }
 

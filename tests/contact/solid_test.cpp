@@ -39,10 +39,12 @@ Samples sample_cylinder(double radius, double height) {
   Samples samples;
   const int around = 400, along = 100;
   for (int i = 0; i < around; ++i) {
-    const Vec3 rim(radius * std::cos(2 * pi * i / around), radius * std::sin(2 * pi * i / around), 0.0);
+    const Vec3 rim(radius * std::cos(2 * pi * i / around), radius * std::sin(2 * pi * i / around),
+                   0.0);
     for (int k = 0; k <= along; ++k) {
       samples.points.push_back(rim + Vec3(0, 0, height * (double(k) / along - 0.5)));
-      for (const double end : {-0.5, 0.5}) samples.points.push_back(rim * k / along + Vec3(0, 0, end * height));
+      for (const double end : {-0.5, 0.5})
+        samples.points.push_back(rim * k / along + Vec3(0, 0, end * height));
     }
   }
   samples.spacing = 0.5 * std::hypot(2 * pi * radius / around, std::max(height, radius) / along);
@@ -55,7 +57,8 @@ struct Case {
 };
 
 std::vector<Case> sampled_solids() {
-  return {{test::box(Vec3(0.6, 0.4, 0.3)), sample_box(Vec3(0.6, 0.4, 0.3))}, {test::cylinder(0.25, 0.5), sample_cylinder(0.25, 0.5)}};
+  return {{test::box(Vec3(0.6, 0.4, 0.3)), sample_box(Vec3(0.6, 0.4, 0.3))},
+          {test::cylinder(0.25, 0.5), sample_cylinder(0.25, 0.5)}};
 }
 
 bool inside(const Solid& solid, const Vec3& p) {
@@ -83,13 +86,16 @@ TEST(ClosestSurface, distanceAgreesWithSamplesOfTheSurface) {
 TEST(ClosestSurface, stepAlongTheNormalLandsOnTheSurface) {
   std::mt19937 random(12);
   std::uniform_real_distribution<double> uniform(-0.6, 0.6);
-  for (const Solid& solid : {test::sphere(0.3), test::box(Vec3(0.6, 0.4, 0.3)), test::cylinder(0.25, 0.5), test::plane(Vec3::UnitZ())})
+  for (const Solid& solid : {test::sphere(0.3), test::box(Vec3(0.6, 0.4, 0.3)),
+                             test::cylinder(0.25, 0.5), test::plane(Vec3::UnitZ())})
     for (int k = 0; k < 2000; ++k) {
       const Vec3 p(uniform(random), uniform(random), uniform(random));
       const SurfacePoint nearest = closest_surface(solid, p);
       EXPECT_NEAR(nearest.normal.norm(), 1.0, 1e-14);
       EXPECT_EQ(surface_distance(solid, p), nearest.distance);
-      EXPECT_NEAR(closest_surface(solid, p - nearest.distance * nearest.normal).distance, 0.0, 1e-14) << p.transpose();
+      EXPECT_NEAR(closest_surface(solid, p - nearest.distance * nearest.normal).distance, 0.0,
+                  1e-14)
+          << p.transpose();
     }
 }
 
@@ -97,15 +103,18 @@ TEST(ClosestSurface, normalIsTheGradientOfTheDistance) {
   std::mt19937 random(13);
   std::uniform_real_distribution<double> uniform(-0.6, 0.6);
   const double e = 1e-6;
-  for (const Solid& solid : {test::sphere(0.3), test::box(Vec3(0.6, 0.4, 0.3)), test::cylinder(0.25, 0.5), test::plane(Vec3::UnitZ())}) {
+  for (const Solid& solid : {test::sphere(0.3), test::box(Vec3(0.6, 0.4, 0.3)),
+                             test::cylinder(0.25, 0.5), test::plane(Vec3::UnitZ())}) {
     int compared = 0;
     for (int k = 0; k < 2000; ++k) {
       const Vec3 p(uniform(random), uniform(random), uniform(random));
       Vec3 gradient;
       for (int c = 0; c < 3; ++c)
-        gradient[c] =
-            (closest_surface(solid, p + e * Vec3::Unit(c)).distance - closest_surface(solid, p - e * Vec3::Unit(c)).distance) / (2 * e);
-      // Inside a box or cylinder the gradient jumps on the medial axis; differences that straddle it are not of length 1.
+        gradient[c] = (closest_surface(solid, p + e * Vec3::Unit(c)).distance -
+                       closest_surface(solid, p - e * Vec3::Unit(c)).distance) /
+                      (2 * e);
+      // Inside a box or cylinder the gradient jumps on the medial axis; differences that straddle
+      // it are not of length 1.
       if (std::abs(gradient.norm() - 1.0) > 1e-4) continue;
       ++compared;
       EXPECT_LT((gradient - closest_surface(solid, p).normal).norm(), 1e-3) << p.transpose();
@@ -123,13 +132,16 @@ TEST(ClosestSurface, normalsAreContinuousOutside) {
       const SurfacePoint here = closest_surface(solid, p);
       if (here.distance < 1e-2) continue;
       const Vec3 step = 1e-7 * Vec3(uniform(random), uniform(random), uniform(random));
-      EXPECT_LT((closest_surface(solid, p + step).normal - here.normal).norm(), 2.0 * step.norm() / here.distance + 1e-14);
+      EXPECT_LT((closest_surface(solid, p + step).normal - here.normal).norm(),
+                2.0 * step.norm() / here.distance + 1e-14);
     }
 }
 
 TEST(ClosestSurface, finiteWhereTheNormalIsNotUnique) {
-  for (const Solid& solid : {test::sphere(0.3), test::box(Vec3(0.6, 0.6, 0.6)), test::cylinder(0.25, 0.5)})
-    for (const Vec3& p : {Vec3(0, 0, 0), Vec3(-0.0, 0.0, -0.0), Vec3(0.3, 0.3, 0.3), Vec3(0.25, 0, 0.25), Vec3(1e-200, 0, 0)}) {
+  for (const Solid& solid :
+       {test::sphere(0.3), test::box(Vec3(0.6, 0.6, 0.6)), test::cylinder(0.25, 0.5)})
+    for (const Vec3& p : {Vec3(0, 0, 0), Vec3(-0.0, 0.0, -0.0), Vec3(0.3, 0.3, 0.3),
+                          Vec3(0.25, 0, 0.25), Vec3(1e-200, 0, 0)}) {
       const SurfacePoint nearest = closest_surface(solid, p);
       EXPECT_TRUE(std::isfinite(nearest.distance));
       EXPECT_NEAR(nearest.normal.norm(), 1.0, 1e-14) << p.transpose();
@@ -143,19 +155,26 @@ TEST(SolidPose, constantVelocityAndTurn) {
   solid.angular_velocity = Vec3(0, 0, 2.0);
   const Pose pose = solid.pose(0.7);
   EXPECT_LT((pose.translation - Vec3(1.07, 1.86, 3.21)).norm(), 1e-15);
-  const Mat3 expected = (Eigen::AngleAxisd(1.4, Vec3::UnitZ()) * Eigen::AngleAxisd(0.3, Vec3::UnitX())).toRotationMatrix();
+  const Mat3 expected =
+      (Eigen::AngleAxisd(1.4, Vec3::UnitZ()) * Eigen::AngleAxisd(0.3, Vec3::UnitX()))
+          .toRotationMatrix();
   EXPECT_LT((pose.rotation.toRotationMatrix() - expected).norm(), 1e-15);
 }
 
 TEST(SolidPose, keyFramesAreLinearAndSphericallyLinear) {
   Solid solid = test::box(Vec3::Ones());
   const Vec3 axis = Vec3(1, 2, -1).normalized();
-  const auto turned = [&](double angle) { return Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis)); };
-  solid.key_frames = {{1.0, {turned(0.2), Vec3(0, 0, 0)}}, {2.0, {turned(1.4), Vec3(1, 0, 2)}}, {4.0, {turned(1.0), Vec3(1, 4, 2)}}};
+  const auto turned = [&](double angle) {
+    return Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis));
+  };
+  solid.key_frames = {{1.0, {turned(0.2), Vec3(0, 0, 0)}},
+                      {2.0, {turned(1.4), Vec3(1, 0, 2)}},
+                      {4.0, {turned(1.0), Vec3(1, 4, 2)}}};
   const auto expect = [&](double time, double angle, const Vec3& place) {
     const Pose pose = solid.pose(time);
     EXPECT_LT(pose.rotation.angularDistance(turned(angle)), 1e-7) << time;
-    EXPECT_LT((pose.rotation.toRotationMatrix() - turned(angle).toRotationMatrix()).norm(), 1e-14) << time;
+    EXPECT_LT((pose.rotation.toRotationMatrix() - turned(angle).toRotationMatrix()).norm(), 1e-14)
+        << time;
     EXPECT_LT((pose.translation - place).norm(), 1e-15) << time;
   };
   expect(0.0, 0.2, Vec3(0, 0, 0));  // held before the first
@@ -171,9 +190,14 @@ TEST(SolidPose, shorterWayRoundAndJumps) {
   Solid solid = test::box(Vec3::Ones());
   Eigen::Quaterniond quarter(Eigen::AngleAxisd(0.5 * pi, Vec3::UnitZ()));
   quarter.coeffs() *= -1.0;  // the same rotation
-  solid.key_frames = {{0.0, {}}, {1.0, {quarter, Vec3::Zero()}}, {1.0, {Eigen::Quaterniond::Identity(), Vec3(5, 0, 0)}}};
-  EXPECT_LT((solid.pose(0.5).rotation * Vec3::UnitX() - Vec3(std::sqrt(0.5), std::sqrt(0.5), 0)).norm(), 1e-14);
-  EXPECT_EQ(solid.pose(1.0).translation, Vec3(5, 0, 0));  // two frames at one time: a jump, no division by zero
+  solid.key_frames = {{0.0, {}},
+                      {1.0, {quarter, Vec3::Zero()}},
+                      {1.0, {Eigen::Quaterniond::Identity(), Vec3(5, 0, 0)}}};
+  EXPECT_LT(
+      (solid.pose(0.5).rotation * Vec3::UnitX() - Vec3(std::sqrt(0.5), std::sqrt(0.5), 0)).norm(),
+      1e-14);
+  // two frames at one time: a jump, no division by zero
+  EXPECT_EQ(solid.pose(1.0).translation, Vec3(5, 0, 0));
 }
 
 TEST(SolidStep, anchorIsWhereTheStraightPathEnters) {
@@ -206,7 +230,8 @@ TEST(SolidStep, passageThroughThinPlateIsSeen) {
 TEST(SolidStep, meetsAgreesWithTheDistanceAtTheEnd) {
   std::mt19937 random(15);
   std::uniform_real_distribution<double> uniform(-0.6, 0.6);
-  for (Solid solid : {test::sphere(0.3), test::box(Vec3(0.6, 0.4, 0.3)), test::cylinder(0.25, 0.5), test::plane(Vec3(1, 2, 3))}) {
+  for (Solid solid : {test::sphere(0.3), test::box(Vec3(0.6, 0.4, 0.3)), test::cylinder(0.25, 0.5),
+                      test::plane(Vec3(1, 2, 3))}) {
     solid.thickness = 0.01;
     solid.angular_velocity = Vec3(1, -2, 3);
     solid.velocity = Vec3(0.5, 0, -1);

@@ -1,7 +1,7 @@
 #pragma once
-// A small sheet of springs with its own direct solver, for tests of contact on coupled nodes: A = M + h² K, b = h (f - h K v), solved in
-// the pre-filtered form (S A S + I - S) y = S (b + friction - A z), dv = y + z. Springs: grid edges, diagonals, next-but-one; slack when
-// short.
+// A small sheet of springs with its own direct solver, for tests of contact on coupled nodes: A = M
+// + h² K, b = h (f - h K v), solved in the pre-filtered form (S A S + I - S) y = S (b + friction -
+// A z), dv = y + z. Springs: grid edges, diagonals, next-but-one; slack when short.
 
 #include <gtest/gtest.h>
 
@@ -32,7 +32,8 @@ struct SpringSheet {
   template <class Place>
   SpringSheet(Index nodes_on_side, double stretch, const Place& place) : side(nodes_on_side) {
     for (Index r = 0; r < side; ++r)
-      for (Index c = 0; c < side; ++c) x.push_back(place(double(c) / (side - 1), double(r) / (side - 1)));
+      for (Index c = 0; c < side; ++c)
+        x.push_back(place(double(c) / (side - 1), double(r) / (side - 1)));
     v.assign(x.size(), Vec3::Zero());
     pins.reset(static_cast<Index>(x.size()));
     for (Index r = 0; r < side; ++r)
@@ -68,7 +69,8 @@ struct SpringSheet {
       Mat3 K = Mat3::Zero();
       if (length > s.rest) {
         const Vec3 e = d / length;
-        K = s.stiffness * (e * e.transpose() + (1 - s.rest / length) * (Mat3::Identity() - e * e.transpose()));
+        K = s.stiffness *
+            (e * e.transpose() + (1 - s.rest / length) * (Mat3::Identity() - e * e.transpose()));
         const Vec3 f = s.stiffness * (length - s.rest) * e;
         force.segment<3>(3 * s.a) += f, force.segment<3>(3 * s.b) -= f;
       }
@@ -104,7 +106,8 @@ struct SpringSheet {
             filter.emplace_back(3 * i + r, 3 * i + c, S(r, c));
             rest.emplace_back(3 * i + r, 3 * i + c, (r == c ? mass : 0.0) - mass * S(r, c));
           }
-        z.segment<3>(3 * i) = constraints.displacement(i) / h - constraints.constrained_part(i, v[i]);
+        z.segment<3>(3 * i) =
+            constraints.displacement(i) / h - constraints.constrained_part(i, v[i]);
         if (!contact.impulses().empty()) rhs.segment<3>(3 * i) += contact.impulses()[i];
       }
       Sparse S(3 * n, 3 * n), R(3 * n, 3 * n);

@@ -18,15 +18,19 @@ inline Vec3 anywhere(std::mt19937& random, double bound) {
   return Vec3(any(random), any(random), any(random));
 }
 
-// A crumpled sheet of nu x nv nodes, a solid of loose triangles in it, and a small second sheet; all move by up to `motion` (m).
-inline Soup make_soup(std::uint32_t seed, Index nu, Index nv, Index solid_triangles, double noise, double motion) {
+// A crumpled sheet of nu x nv nodes, a solid of loose triangles in it, and a small second sheet;
+// all move by up to `motion` (m).
+inline Soup make_soup(std::uint32_t seed, Index nu, Index nv, Index solid_triangles, double noise,
+                      double motion) {
   std::mt19937 random(seed);
   Soup soup;
   GridShape shape;
   shape.nu = nu;
   shape.nv = nv;
   TriangleMesh sheet = make_grid(shape);
-  for (Vec3& x : sheet.positions) x = Vec3(x[0] + 0.1 * std::sin(9 * x[2]), 0.2 * std::sin(7 * x[0]), 0.5 * x[2]) + anywhere(random, noise);
+  for (Vec3& x : sheet.positions)
+    x = Vec3(x[0] + 0.1 * std::sin(9 * x[2]), 0.2 * std::sin(7 * x[0]), 0.5 * x[2]) +
+        anywhere(random, noise);
   shape.nu = shape.nv = 3;
   shape.origin = Vec3(0.3, 0.05, 0.1);
   const TriangleMesh second = make_grid(shape);
@@ -37,7 +41,8 @@ inline Soup make_soup(std::uint32_t seed, Index nu, Index nv, Index solid_triang
     solid.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
   }
   std::vector<SurfacePart> parts;
-  for (const TriangleMesh* mesh : std::initializer_list<const TriangleMesh*>{&sheet, &solid, &second}) {
+  for (const TriangleMesh* mesh :
+       std::initializer_list<const TriangleMesh*>{&sheet, &solid, &second}) {
     parts.push_back({static_cast<Index>(mesh->positions.size()), mesh->triangles, mesh == &solid});
     soup.x0.insert(soup.x0.end(), mesh->positions.begin(), mesh->positions.end());
   }

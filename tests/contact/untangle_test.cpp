@@ -1,5 +1,5 @@
-// Cloth that intersects at the start is drawn apart, keeps its shape, and CGAL finds nothing left; what cannot be repaired is left as it
-// was.
+// Cloth that intersects at the start is drawn apart, keeps its shape, and CGAL finds nothing left;
+// what cannot be repaired is left as it was.
 
 #include "taut/contact/untangle.h"
 
@@ -30,7 +30,8 @@ struct Wardrobe {
 
   // At rest as in `mesh`; there it is at `place` of that.
   template <class Place>
-  void add(const std::string& name, const TriangleMesh& mesh, const Place& place, bool solid = false) {
+  void add(const std::string& name, const TriangleMesh& mesh, const Place& place,
+           bool solid = false) {
     meshes.push_back(mesh);
     bodies.push_back({name, solid, 0.0, 0.3});
     for (const Vec3& rest : mesh.positions) x.push_back(place(rest));
@@ -46,21 +47,25 @@ struct Wardrobe {
   CollisionSurface surface() const {
     std::vector<SurfacePart> parts;
     for (std::size_t k = 0; k < meshes.size(); ++k)
-      parts.push_back({static_cast<Index>(meshes[k].positions.size()), meshes[k].triangles, bodies[k].is_solid});
+      parts.push_back({static_cast<Index>(meshes[k].positions.size()), meshes[k].triangles,
+                       bodies[k].is_solid});
     return join_surfaces(parts);
   }
   std::vector<double> rest_lengths() const {
     std::vector<Vec3> rest;
-    for (const TriangleMesh& mesh : meshes) rest.insert(rest.end(), mesh.positions.begin(), mesh.positions.end());
+    for (const TriangleMesh& mesh : meshes)
+      rest.insert(rest.end(), mesh.positions.begin(), mesh.positions.end());
     std::vector<double> lengths;
-    for (const EdgeVertices& edge : surface().edges) lengths.push_back((rest[edge[1]] - rest[edge[0]]).norm());
+    for (const EdgeVertices& edge : surface().edges)
+      lengths.push_back((rest[edge[1]] - rest[edge[0]]).norm());
     return lengths;
   }
   std::size_t judged() const {
     const CollisionSurface all = surface();
     return test::intersecting_triangles(x, all.triangles, all.is_solid).size();
   }
-  // How far edges' lengths are outside the range between what they were and what they are at rest, at most, as a share.
+  // How far edges' lengths are outside the range between what they were and what they are at rest,
+  // at most, as a share.
   double length_change(const std::vector<Vec3>& start) const {
     const CollisionSurface all = surface();
     const std::vector<double> rest = rest_lengths();
@@ -69,7 +74,8 @@ struct Wardrobe {
       const auto [a, b] = all.edges[e];
       if (all.is_solid[a]) continue;
       const double before = (start[b] - start[a]).norm(), now = (x[b] - x[a]).norm();
-      worst = std::max({worst, now / std::max(before, rest[e]) - 1, 1 - now / std::min(before, rest[e])});
+      worst = std::max(
+          {worst, now / std::max(before, rest[e]) - 1, 1 - now / std::min(before, rest[e])});
     }
     return worst;
   }
@@ -83,7 +89,8 @@ struct Wardrobe {
 };
 
 TriangleMesh sheet(Index nu, Index nv, double width, double height) {
-  return make_grid({nu, nv, Vec3(-0.5 * width, -0.5 * height, 0), Vec3(width, 0, 0), Vec3(0, height, 0)});
+  return make_grid(
+      {nu, nv, Vec3(-0.5 * width, -0.5 * height, 0), Vec3(width, 0, 0), Vec3(0, height, 0)});
 }
 Vec3 as_it_is(const Vec3& x) { return x; }
 
@@ -91,8 +98,10 @@ Vec3 as_it_is(const Vec3& x) { return x; }
 Wardrobe dented() {
   Wardrobe w;
   w.add("low", sheet(25, 25, 0.24, 0.24), as_it_is);
-  w.add("high", sheet(23, 23, 0.22, 0.22),
-        [](const Vec3& p) { return Vec3(p.x() + 3e-3, p.y() + 2e-3, 3e-3 - 8e-3 * std::exp(-p.squaredNorm() / (2 * 0.03 * 0.03))); });
+  w.add("high", sheet(23, 23, 0.22, 0.22), [](const Vec3& p) {
+    return Vec3(p.x() + 3e-3, p.y() + 2e-3,
+                3e-3 - 8e-3 * std::exp(-p.squaredNorm() / (2 * 0.03 * 0.03)));
+  });
   return w;
 }
 
@@ -113,7 +122,9 @@ Wardrobe folded() {
   w.add("fold", sheet(41, 21, 0.2, 0.1), [](const Vec3& p) {
     const double arc = radius * std::numbers::pi;
     if (p.x() < 0) return Vec3(p.x(), p.y(), 0);
-    if (p.x() < arc) return Vec3(radius * std::sin(p.x() / radius), p.y(), radius * (1 - std::cos(p.x() / radius)));
+    if (p.x() < arc)
+      return Vec3(radius * std::sin(p.x() / radius), p.y(),
+                  radius * (1 - std::cos(p.x() / radius)));
     const double x = arc - p.x(), distance2 = std::pow(x + 0.04, 2) + p.y() * p.y();
     return Vec3(x, p.y(), 2 * radius - 11e-3 * std::exp(-distance2 / (2 * 0.015 * 0.015)));
   });
@@ -161,25 +172,30 @@ TEST_P(Tangle, IsDrawnApartAndKeepsItsShape) {
     }
     EXPECT_EQ(report.moved, moved);
     EXPECT_EQ(report.largest, largest);
-    EXPECT_LT(report.moved, static_cast<Index>(start.size()) / 3) << "it leaves alone what does not take part";
+    EXPECT_LT(report.moved, static_cast<Index>(start.size()) / 3)
+        << "it leaves alone what does not take part";
     EXPECT_LE(w.length_change(start), 0.03) << seed;
     EXPECT_GE(report.gap, 0.05 * thickness) << seed;
   }
 }
 
-const Case cases[] = {{"dented", dented}, {"slipped_under", slipped_under}, {"folded", folded}, {"poked", poked}};
-INSTANTIATE_TEST_SUITE_P(All, Tangle, testing::ValuesIn(cases), [](const auto& c) { return std::string(c.param.name); });
+const Case cases[] = {
+    {"dented", dented}, {"slipped_under", slipped_under}, {"folded", folded}, {"poked", poked}};
+INSTANTIATE_TEST_SUITE_P(All, Tangle, testing::ValuesIn(cases),
+                         [](const auto& c) { return std::string(c.param.name); });
 
 // A strip through the middle of a sheet, far out on both sides, held at its ends.
 TEST(Untangle, SaysWhatItCannotDoAndChangesNothing) {
   Wardrobe w;
   w.add("sheet", sheet(21, 21, 0.2, 0.2), as_it_is);
-  w.add("strip", sheet(31, 4, 0.6, 0.03), [](const Vec3& p) { return Vec3(p.y() + 1e-3, 2e-3, p.x() + 1e-3); });
+  w.add("strip", sheet(31, 4, 0.6, 0.03),
+        [](const Vec3& p) { return Vec3(p.y() + 1e-3, 2e-3, p.x() + 1e-3); });
   for (const Index end : {0, 30}) w.held[441 + end] = 1;
   const std::vector<Vec3> start = w.x;
   const UntangleReport report = w.untangle();
   EXPECT_FALSE(report.status.ok());
-  EXPECT_NE(report.status.message.find("are left after"), std::string::npos) << report.status.message;
+  EXPECT_NE(report.status.message.find("are left after"), std::string::npos)
+      << report.status.message;
   EXPECT_FALSE(report.left.empty());
   EXPECT_EQ(w.x, start);
   EXPECT_EQ(report.moved, 0);
@@ -216,7 +232,10 @@ TEST(Untangle, ComesOutOfSolids) {
   ball.initial.translation = Vec3(0.003, 0.002, -0.045);
   w.solids.push_back(ball);
   w.add(
-      "block", sheet(5, 5, 0.02, 0.02), [](const Vec3& p) { return Vec3(p.x() + 0.07, p.y() + 0.07 - 0.3 * p.x(), 2e-3 + 0.4 * p.x()); },
+      "block", sheet(5, 5, 0.02, 0.02),
+      [](const Vec3& p) {
+        return Vec3(p.x() + 0.07, p.y() + 0.07 - 0.3 * p.x(), 2e-3 + 0.4 * p.x());
+      },
       true);
   w.jitter(2e-4, 1);
   ASSERT_GT(w.judged(), 0u);
@@ -225,14 +244,16 @@ TEST(Untangle, ComesOutOfSolids) {
   EXPECT_GT(report.inside_solids_before, 10);
   EXPECT_EQ(report.inside_solids_after, 0);
   EXPECT_EQ(w.judged(), 0u);
-  for (Index i = 0; i < 441; ++i) EXPECT_GT((w.x[i] - ball.initial.translation).norm(), ball.radius + ball.thickness - 2e-5) << i;
+  for (Index i = 0; i < 441; ++i)
+    EXPECT_GT((w.x[i] - ball.initial.translation).norm(), ball.radius + ball.thickness - 2e-5) << i;
 }
 
 // Half a ball below a sheet whose border is held: the way over it is longer than the sheet.
 TEST(Untangle, SaysWhatItWouldHaveToStretch) {
   Wardrobe w;
   w.add("sheet", sheet(21, 21, 0.2, 0.2), [](const Vec3& p) { return Vec3(p.x(), p.y(), 1e-3); });
-  for (std::size_t i = 0; i < w.x.size(); ++i) w.held[i] = w.x[i].head<2>().cwiseAbs().maxCoeff() > 0.099;
+  for (std::size_t i = 0; i < w.x.size(); ++i)
+    w.held[i] = w.x[i].head<2>().cwiseAbs().maxCoeff() > 0.099;
   Solid ball;
   ball.radius = 0.08;
   w.solids.push_back(ball);
@@ -240,7 +261,8 @@ TEST(Untangle, SaysWhatItWouldHaveToStretch) {
   const UntangleReport report = w.untangle();
   EXPECT_FALSE(report.status.ok());
   EXPECT_EQ(report.intersections_before, 0);
-  const std::string said = fmt::format("0 intersections, with {} nodes inside solids, can only be", report.inside_solids_before);
+  const std::string said = fmt::format("0 intersections, with {} nodes inside solids, can only be",
+                                       report.inside_solids_before);
   EXPECT_TRUE(report.status.message.starts_with(said)) << report.status.message;
   EXPECT_EQ(w.x, start);
 }

@@ -1,4 +1,5 @@
-// What is left out of a preconditioner: A = P + E for any mask, conjugate gradients' product from P c and E, the same bits for any threads.
+// What is left out of a preconditioner: A = P + E for any mask, conjugate gradients' product from P
+// c and E, the same bits for any threads.
 
 #include "taut/core/block_remainder.h"
 
@@ -16,7 +17,8 @@ void make_blocks_symmetric(BlockCsr& a) {
   for (Index i = 0; i < p.rows(); ++i)
     for (Index k = p.row_start[i]; k < p.row_start[i + 1]; ++k) {
       if (p.dim(i) != 3 || p.dim(p.column[k]) != 3) continue;
-      Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>, 0, Eigen::OuterStride<>> block(a.block(i, k), Eigen::OuterStride<>(p.width(i)));
+      Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>, 0, Eigen::OuterStride<>> block(
+          a.block(i, k), Eigen::OuterStride<>(p.width(i)));
       block = (0.5 * (block + block.transpose())).eval();
     }
 }
@@ -34,13 +36,16 @@ struct Split {
     mask.assign(static_cast<std::size_t>(pattern.blocks()), 1);
     for (Index i = 0; i < nodes; ++i)
       for (Index k = pattern.row_start[i]; k < pattern.row_start[i + 1]; ++k)
-        if (pattern.column[k] < i && random.uniform() < share) mask[k] = mask[pattern.find(pattern.column[k], i)] = 0;
+        if (pattern.column[k] < i && random.uniform() < share)
+          mask[k] = mask[pattern.find(pattern.column[k], i)] = 0;
     e = p = dense(a);
     for (Index i = 0; i < nodes; ++i)
       for (Index j = 0; j < nodes; ++j) {
         const Index k = pattern.find(i, j);
         const bool is_left_out = k >= 0 && i != j && !mask[k];
-        (is_left_out ? p : e).block(pattern.dof_start[i], pattern.dof_start[j], pattern.dim(i), pattern.dim(j)).setZero();
+        (is_left_out ? p : e)
+            .block(pattern.dof_start[i], pattern.dof_start[j], pattern.dim(i), pattern.dim(j))
+            .setZero();
       }
   }
 };
@@ -63,11 +68,14 @@ TEST(BlockRemainder, GivesTheProductOfADirection) {
       for (Index i = 69; i >= 0; --i) remainder.update_rows(s.a, i, i + 1);
       const std::vector<double> z = random.vector(s.a.dofs()), last = random.vector(s.a.dofs());
       const double beta = update * 0.37;
-      const Eigen::VectorXd c = as_eigen(z) + beta * as_eigen(last), r = s.p * as_eigen(z), before = s.p * as_eigen(last);
-      std::vector<double> direction(c.begin(), c.end()), residual(r.begin(), r.end()), p(before.begin(), before.end()), q(p.size());
+      const Eigen::VectorXd c = as_eigen(z) + beta * as_eigen(last), r = s.p * as_eigen(z),
+                            before = s.p * as_eigen(last);
+      std::vector<double> direction(c.begin(), c.end()), residual(r.begin(), r.end()),
+          p(before.begin(), before.end()), q(p.size());
       const double energy = remainder.advance(beta, residual, direction, p, q);
       EXPECT_LT((as_eigen(p) - s.p * c).norm(), 1e-12 * (s.p * c).norm());
-      EXPECT_LT((as_eigen(q) - s.p * c - s.e * c).norm(), unit * s.e.norm() * c.norm() + 1e-12 * s.p.norm() * c.norm());
+      EXPECT_LT((as_eigen(q) - s.p * c - s.e * c).norm(),
+                unit * s.e.norm() * c.norm() + 1e-12 * s.p.norm() * c.norm());
       EXPECT_NEAR(energy, c.dot(as_eigen(q)), 1e-12 * std::abs(energy));
       for (double& value : s.a.values) value *= 2.0;
       s.p *= 2.0, s.e *= 2.0;
@@ -75,7 +83,8 @@ TEST(BlockRemainder, GivesTheProductOfADirection) {
   }
 }
 
-// E = A - P for the springs left out and for those replaced, in turn: its product, and the ratios that bound it.
+// E = A - P for the springs left out and for those replaced, in turn: its product, and the ratios
+// that bound it.
 TEST(BlockRemainder, KnowsWhatParallelogramsLeave) {
   Random random(34);
   SpringGrid grid(random, 9, 7);
@@ -83,7 +92,9 @@ TEST(BlockRemainder, KnowsWhatParallelogramsLeave) {
   std::vector<std::uint8_t> kept = grid.sides;
   for (Index i = 0; i < pattern.rows(); ++i)
     for (Index k = pattern.row_start[i]; k < pattern.row_start[i + 1]; ++k)
-      if (const Index j = pattern.column[k]; std::abs(i - j) == grid.nu + 1 && random.uniform() < 0.5) kept[k] = kept[pattern.find(j, i)] = 1;
+      if (const Index j = pattern.column[k];
+          std::abs(i - j) == grid.nu + 1 && random.uniform() < 0.5)
+        kept[k] = kept[pattern.find(j, i)] = 1;
   const std::vector<Parallelogram> list = parallelograms(pattern, grid.sides, kept);
   ASSERT_GT(list.size(), 10u);
   ASSERT_LT(list.size(), 48u);
@@ -95,7 +106,9 @@ TEST(BlockRemainder, KnowsWhatParallelogramsLeave) {
   const Eigen::MatrixXd a = dense(grid.a);
   for (const bool replaced : {false, true, false}) {
     remainder.set_replaced(replaced);
-    const Eigen::MatrixXd p = dense_core(grid.a, kept, replaced ? std::span<const Parallelogram>(list) : std::span<const Parallelogram>());
+    const Eigen::MatrixXd p = dense_core(
+        grid.a, kept,
+        replaced ? std::span<const Parallelogram>(list) : std::span<const Parallelogram>());
     const std::vector<double> c = random.vector(grid.a.dofs()), r = random.vector(grid.a.dofs());
     std::vector<double> last = random.vector(grid.a.dofs()), q(c.size());
     const Eigen::VectorXd expected = as_eigen(r) + 0.3 * as_eigen(last), e = (a - p) * as_eigen(c);
@@ -136,17 +149,22 @@ TEST(BlockRemainder, JoinsBatches) {
   const BlockPattern& pattern = *grid.a.pattern;
   std::vector<std::uint8_t> kept = grid.sides;
   for (Index i = 0; i + grid.nu + 1 < pattern.rows(); ++i)
-    if (const Index k = pattern.find(i, i + grid.nu + 1); k >= 0) kept[k] = kept[pattern.find(i + grid.nu + 1, i)] = 1;
+    if (const Index k = pattern.find(i, i + grid.nu + 1); k >= 0)
+      kept[k] = kept[pattern.find(i + grid.nu + 1, i)] = 1;
   const std::vector<Parallelogram> list = parallelograms(pattern, grid.sides, kept);
   ASSERT_GT(list.size(), 500u);
   BlockRemainder remainder;
   remainder.analyze(grid.a.pattern, kept, list);
   ASSERT_GT(remainder.batches(), 3);
   remainder.update(grid.a);
-  const std::vector<double> c = random.vector(grid.a.dofs()), r = random.vector(grid.a.dofs()), masses(static_cast<std::size_t>(pattern.rows()), 0.5);
-  const auto at = [&](Index i) { return Eigen::Map<const Vec3>(&c[3 * static_cast<std::size_t>(i)]); };
+  const std::vector<double> c = random.vector(grid.a.dofs()), r = random.vector(grid.a.dofs()),
+                            masses(static_cast<std::size_t>(pattern.rows()), 0.5);
+  const auto at = [&](Index i) {
+    return Eigen::Map<const Vec3>(&c[3 * static_cast<std::size_t>(i)]);
+  };
   const auto block = [&](Index i, Index k) -> Mat3 {
-    return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>, 0, Eigen::OuterStride<>>(grid.a.block(i, k), Eigen::OuterStride<>(pattern.width(i)));
+    return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>, 0, Eigen::OuterStride<>>(
+        grid.a.block(i, k), Eigen::OuterStride<>(pattern.width(i)));
   };
   for (const bool replaced : {false, true}) {
     remainder.set_replaced(replaced);
@@ -201,11 +219,13 @@ TEST(BlockRemainder, DeterministicForAnyNumberOfThreads) {
   const SpringGrid s(random, 60, 50);
   std::vector<std::uint8_t> kept = s.sides;
   for (Index i = 0; i + s.nu + 1 < s.a.rows(); ++i)
-    if (const Index k = s.a.pattern->find(i, i + s.nu + 1); k >= 0) kept[k] = kept[s.a.pattern->find(i + s.nu + 1, i)] = 1;
+    if (const Index k = s.a.pattern->find(i, i + s.nu + 1); k >= 0)
+      kept[k] = kept[s.a.pattern->find(i + s.nu + 1, i)] = 1;
   BlockRemainder remainder;
   remainder.analyze(s.a.pattern, kept, parallelograms(*s.a.pattern, s.sides, kept));
   remainder.set_replaced(true);
-  const std::vector<double> r = random.vector(s.a.dofs()), c = random.vector(s.a.dofs()), start = random.vector(s.a.dofs());
+  const std::vector<double> r = random.vector(s.a.dofs()), c = random.vector(s.a.dofs()),
+                            start = random.vector(s.a.dofs());
   const int usual = thread_count();
   std::vector<double> expected;
   double energy = 0.0;

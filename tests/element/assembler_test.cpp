@@ -18,8 +18,12 @@ struct Sheet {
   Sheet(Index nu, Index nv, BendModel bend) : random(5) {
     const GridShape shape{.nu = nu, .nv = nv};
     const TriangleMesh mesh = make_grid(shape);
-    SpringMaterial material{
-        .k_stretch = 60.0, .k_shear = 3.0, .k_bend = 0.5, .k_damp_stretch = 0.4, .k_damp_shear = 0.2, .k_damp_bend = 0.1};
+    SpringMaterial material{.k_stretch = 60.0,
+                            .k_shear = 3.0,
+                            .k_bend = 0.5,
+                            .k_damp_stretch = 0.4,
+                            .k_damp_shear = 0.2,
+                            .k_damp_bend = 0.1};
     material.bend_model = bend;
     if (bend == BendModel::choi_ko) material.k_bend = 1e-3;
     owned = grid_springs(shape, mesh.positions, material, 0, "sheet");
@@ -64,15 +68,18 @@ struct Dense {
   Eigen::VectorXd b;
 };
 
-// Springs of the models chosen, without masses; `mask(i, j)`: whether a spring between these counts.
+// Springs of the models chosen, without masses; `mask(i, j)`: whether a spring between these
+// counts.
 template <class Mask>
 Dense dense_springs(const Sheet& s, const std::vector<bool>& implicit, const Mask& mask) {
   Dense sum{Eigen::MatrixXd::Zero(3 * s.nodes, 3 * s.nodes), Eigen::VectorXd::Zero(3 * s.nodes)};
   for (std::size_t m = 0; m < s.owned.size(); ++m)
     for (const auto& [i, j, parameters] : s.owned[m]->springs()) {
       if (!mask(i, j)) continue;
-      const SpringResponse r = spring_response(s.owned[m]->law(), parameters, s.x[j] - s.x[i], s.v[j] - s.v[i]);
-      const Vec3 g = 0.7 * r.force + r.stiffness * (s.p[i] - s.p[j]) + r.damping * (s.q[i] - s.q[j]);
+      const SpringResponse r =
+          spring_response(s.owned[m]->law(), parameters, s.x[j] - s.x[i], s.v[j] - s.v[i]);
+      const Vec3 g =
+          0.7 * r.force + r.stiffness * (s.p[i] - s.p[j]) + r.damping * (s.q[i] - s.q[j]);
       sum.b.segment<3>(3 * i) += g;
       sum.b.segment<3>(3 * j) -= g;
       if (!implicit[m]) continue;
@@ -96,7 +103,8 @@ Eigen::MatrixXd dense_of(const BlockCsr& a) {
 
 TEST(Assembler, EqualsADenseAssembly) {
   for (const BendModel bend : {BendModel::linear, BendModel::choi_ko})
-    for (const std::vector<bool>& implicit : {std::vector<bool>{true, true, true}, {true, false, false}, {false, true, true}}) {
+    for (const std::vector<bool>& implicit :
+         {std::vector<bool>{true, true, true}, {true, false, false}, {false, true, true}}) {
       const Sheet s(5, 4, bend);
       Assembler assembler(s.nodes, s.models, implicit);
       BlockCsr a(assembler.pattern());
@@ -105,10 +113,14 @@ TEST(Assembler, EqualsADenseAssembly) {
       assembler.assemble(s.requests(implicit), {s.masses, 3.0, {}, 0.0}, a, b);
       assembler.assemble(s.requests(implicit), {s.masses, 1.5, s.damping, 0.4}, a, b);
       Dense expected = dense_springs(s, implicit, all_springs);
-      for (Index i = 0; i < s.nodes; ++i) expected.a.block<3, 3>(3 * i, 3 * i) += 1.5 * s.masses[i] * Mat3::Identity() + 0.4 * s.damping[i];
+      for (Index i = 0; i < s.nodes; ++i)
+        expected.a.block<3, 3>(3 * i, 3 * i) +=
+            1.5 * s.masses[i] * Mat3::Identity() + 0.4 * s.damping[i];
       const Eigen::MatrixXd found = dense_of(a);
       EXPECT_LT((found - expected.a).norm(), 1e-13 * expected.a.norm());
-      EXPECT_LT((Eigen::Map<const Eigen::VectorXd>(flat(b).data(), 3 * s.nodes) - expected.b).norm(), 1e-13 * expected.b.norm());
+      EXPECT_LT(
+          (Eigen::Map<const Eigen::VectorXd>(flat(b).data(), 3 * s.nodes) - expected.b).norm(),
+          1e-13 * expected.b.norm());
       EXPECT_TRUE(found == found.transpose()) << "not symmetric to the last bit";
       EXPECT_GT(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(found).eigenvalues()[0], 1.5 * 0.01);
     }
@@ -128,7 +140,8 @@ TEST(Assembler, ModelThatAsksForNoMatrixLeavesNothingBehind) {
 // The pattern: a node itself and those it shares an implicit spring with.
 TEST(Assembler, PatternHasTheImplicitSpringsOnly) {
   const Sheet s(6, 5, BendModel::linear);
-  for (const std::vector<bool>& implicit : {std::vector<bool>{true, true, true}, {true, false, false}}) {
+  for (const std::vector<bool>& implicit :
+       {std::vector<bool>{true, true, true}, {true, false, false}}) {
     const Assembler assembler(s.nodes, s.models, implicit);
     std::set<std::pair<Index, Index>> expected;
     for (Index i = 0; i < s.nodes; ++i) expected.emplace(i, i);
@@ -150,13 +163,15 @@ TEST(Assembler, CoreIsStretchAndTheDiagonal) {
   const Sheet s(6, 5, BendModel::linear);
   const Assembler assembler(s.nodes, s.models, {true, true, true});
   std::set<std::pair<Index, Index>> stretch;
-  for (const Spring& spring : s.owned[0]->springs()) stretch.insert({spring.i, spring.j}), stretch.insert({spring.j, spring.i});
+  for (const Spring& spring : s.owned[0]->springs())
+    stretch.insert({spring.i, spring.j}), stretch.insert({spring.j, spring.i});
   const std::vector<std::uint8_t> mask = assembler.core_mask(ForceClass::stretch);
   const BlockPattern& p = *assembler.pattern();
   ASSERT_EQ(mask.size(), static_cast<std::size_t>(p.blocks()));
   for (Index i = 0; i < p.rows(); ++i)
     for (Index k = p.row_start[i]; k < p.row_start[i + 1]; ++k)
-      EXPECT_EQ(mask[k], i == p.column[k] || stretch.count({i, p.column[k]})) << i << ", " << p.column[k];
+      EXPECT_EQ(mask[k], i == p.column[k] || stretch.count({i, p.column[k]}))
+          << i << ", " << p.column[k];
 }
 
 // Largest eigenvalues of the blocks, whatever the state.
@@ -182,12 +197,15 @@ TEST(Assembler, BlockBoundsHoldInEveryState) {
           Mat3 block;
           for (int r = 0; r < 3; ++r)
             for (int c = 0; c < 3; ++c) block(r, c) = -a.block(i, k)[r * p.width(i) + c];
-          largest[k] = std::max(largest[k], Eigen::SelfAdjointEigenSolver<Mat3>(block).eigenvalues()[2]);
+          largest[k] =
+              std::max(largest[k], Eigen::SelfAdjointEigenSolver<Mat3>(block).eigenvalues()[2]);
         }
     }
-    for (std::size_t k = 0; k < bounds.size(); ++k) EXPECT_LE(largest[k], bounds[k] * (1.0 + 1e-12));
+    for (std::size_t k = 0; k < bounds.size(); ++k)
+      EXPECT_LE(largest[k], bounds[k] * (1.0 + 1e-12));
     if (bend != BendModel::linear) continue;
-    // 0.3 k + 0.2 k_d of a stretch, a shear and a bend spring; reached, to within the damping's direction.
+    // 0.3 k + 0.2 k_d of a stretch, a shear and a bend spring; reached, to within the damping's
+    // direction.
     EXPECT_DOUBLE_EQ(bounds[p.find(7, 8)], 0.3 * 60.0 + 0.2 * 0.4);
     EXPECT_DOUBLE_EQ(bounds[p.find(7, 14)], 0.3 * 3.0 + 0.2 * 0.2);
     EXPECT_DOUBLE_EQ(bounds[p.find(7, 9)], 0.3 * 0.5 + 0.2 * 0.1);
@@ -198,10 +216,13 @@ TEST(Assembler, BlockBoundsHoldInEveryState) {
 TEST(Assembler, CountsTheElementsOfACore) {
   const Sheet s(6, 5, BendModel::linear);
   const Assembler assembler(s.nodes, s.models, {true, true, true});
-  EXPECT_EQ(assembler.elements_in(assembler.core_mask(ForceClass::stretch)), s.models[0]->block_count());
-  EXPECT_EQ(assembler.elements_in(assembler.core_mask(ForceClass::bend)), s.models[2]->block_count());
+  EXPECT_EQ(assembler.elements_in(assembler.core_mask(ForceClass::stretch)),
+            s.models[0]->block_count());
+  EXPECT_EQ(assembler.elements_in(assembler.core_mask(ForceClass::bend)),
+            s.models[2]->block_count());
   const std::vector<std::uint8_t> all(static_cast<std::size_t>(assembler.pattern()->blocks()), 1);
-  EXPECT_EQ(assembler.elements_in(all), s.models[0]->block_count() + s.models[1]->block_count() + s.models[2]->block_count());
+  EXPECT_EQ(assembler.elements_in(all),
+            s.models[0]->block_count() + s.models[1]->block_count() + s.models[2]->block_count());
 }
 
 TEST(Assembler, DeterministicForAnyNumberOfThreads) {
@@ -217,7 +238,8 @@ TEST(Assembler, DeterministicForAnyNumberOfThreads) {
     BlockCsr a(assembler.pattern());
     std::vector<Vec3> b(static_cast<std::size_t>(s.nodes));
     assembler.assemble(s.requests(implicit), {s.masses, 1.0, s.damping, 0.1}, a, b);
-    const double joule = s.owned[0]->energy(s.x) + s.owned[1]->energy(s.x) + s.owned[2]->energy(s.x);
+    const double joule =
+        s.owned[0]->energy(s.x) + s.owned[1]->energy(s.x) + s.owned[2]->energy(s.x);
     if (threads == 1) values = a.values, rhs = b, energy = joule;
     EXPECT_TRUE(a.values == values && b == rhs && joule == energy) << threads << " threads";
   }

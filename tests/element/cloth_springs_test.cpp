@@ -32,7 +32,9 @@ std::set<Index> neighbours(const GridShape& g, ForceClass force_class, Index i, 
   for (Index dj = -2; dj <= 2; ++dj)
     for (Index di = -2; di <= 2; ++di) {
       const Index squared = di * di + dj * dj;
-      const Index wanted = force_class == ForceClass::stretch ? 1 : force_class == ForceClass::shear ? 2 : 4;
+      const Index wanted = force_class == ForceClass::stretch ? 1
+                           : force_class == ForceClass::shear ? 2
+                                                              : 4;
       const bool inside = i + di >= 0 && i + di < g.nu && j + dj >= 0 && j + dj < g.nv;
       if (inside && squared == wanted) found.insert(g.node(i + di, j + dj));
     }
@@ -45,9 +47,11 @@ TEST(GridSprings, EveryNodeHasProvotsNeighbours) {
     const GridShape g{.nu = nu, .nv = nv};
     const TriangleMesh mesh = make_grid(g);
     auto pairs = pairs_of(grid_springs(g, mesh.positions, {}, 0, "sheet"));
-    EXPECT_EQ(pairs[ForceClass::stretch].size(), static_cast<std::size_t>((nu - 1) * nv + nu * (nv - 1)));
+    EXPECT_EQ(pairs[ForceClass::stretch].size(),
+              static_cast<std::size_t>((nu - 1) * nv + nu * (nv - 1)));
     EXPECT_EQ(pairs[ForceClass::shear].size(), static_cast<std::size_t>(2 * (nu - 1) * (nv - 1)));
-    EXPECT_EQ(pairs[ForceClass::bend].size(), static_cast<std::size_t>(std::max(0, nu - 2) * nv + nu * std::max(0, nv - 2)));
+    EXPECT_EQ(pairs[ForceClass::bend].size(),
+              static_cast<std::size_t>(std::max(0, nu - 2) * nv + nu * std::max(0, nv - 2)));
     for (const ForceClass force_class : {ForceClass::stretch, ForceClass::shear, ForceClass::bend})
       for (Index j = 0; j < nv; ++j)
         for (Index i = 0; i < nu; ++i) {
@@ -68,7 +72,11 @@ TEST(GridSprings, RestLengthsAreDistancesInAnyOrientation) {
   const Eigen::Quaterniond turn(0.3, -0.5, 0.7, 0.2);
   const Mat3 rotation = turn.normalized().toRotationMatrix();
   const double a = 0.6, b = 1.4;
-  const GridShape g{.nu = 7, .nv = 8, .origin = Vec3(3, -2, 5), .u = rotation * Vec3(a, 0, 0), .v = rotation * Vec3(0, b, 0)};
+  const GridShape g{.nu = 7,
+                    .nv = 8,
+                    .origin = Vec3(3, -2, 5),
+                    .u = rotation * Vec3(a, 0, 0),
+                    .v = rotation * Vec3(0, b, 0)};
   const double du = a / 6, dv = b / 7;
   const TriangleMesh mesh = make_grid(g);
   for (const auto& model : grid_springs(g, mesh.positions, {}, 0, "sheet"))
@@ -79,7 +87,12 @@ TEST(GridSprings, RestLengthsAreDistancesInAnyOrientation) {
 }
 
 TEST(GridSprings, MaterialGoesToItsClass) {
-  SpringMaterial m{.k_stretch = 1, .k_shear = 2, .k_bend = 3, .k_damp_stretch = 4, .k_damp_shear = 5, .k_damp_bend = 6};
+  SpringMaterial m{.k_stretch = 1,
+                   .k_shear = 2,
+                   .k_bend = 3,
+                   .k_damp_stretch = 4,
+                   .k_damp_shear = 5,
+                   .k_damp_bend = 6};
   const GridShape g{.nu = 4, .nv = 4};
   const TriangleMesh mesh = make_grid(g);
   const auto expect = [&](std::array<SpringLawKind, 3> laws, double cap) {
@@ -115,10 +128,12 @@ TEST(MeshSprings, TetrahedronsSurfaceHasSixEdgesAndSixHinges) {
 }
 
 TEST(MeshSprings, FanOfTrianglesBendsAcrossItsSpokes) {
-  // A hexagon about node 0: 12 edges, 6 of them inside; bend springs join nodes two apart on the rim.
+  // A hexagon about node 0: 12 edges, 6 of them inside; bend springs join nodes two apart on the
+  // rim.
   TriangleMesh mesh;
   mesh.positions = {Vec3::Zero()};
-  for (int k = 0; k < 6; ++k) mesh.positions.push_back(Vec3(std::cos(k * std::acos(0.5)), std::sin(k * std::acos(0.5)), 0));
+  for (int k = 0; k < 6; ++k)
+    mesh.positions.push_back(Vec3(std::cos(k * std::acos(0.5)), std::sin(k * std::acos(0.5)), 0));
   for (Index k = 0; k < 6; ++k) mesh.triangles.push_back({0, 1 + k, 1 + (k + 1) % 6});
   const Models models = mesh_springs(mesh, {}, 10, "hexagon");
   auto pairs = pairs_of(models);
@@ -128,7 +143,8 @@ TEST(MeshSprings, FanOfTrianglesBendsAcrossItsSpokes) {
   EXPECT_EQ(pairs[ForceClass::bend], rim);
   for (const auto& model : models)
     for (const Spring& s : model->springs())
-      EXPECT_NEAR(s.parameters.rest_length, model->force_class() == ForceClass::stretch ? 1.0 : std::sqrt(3.0), 1e-14);
+      EXPECT_NEAR(s.parameters.rest_length,
+                  model->force_class() == ForceClass::stretch ? 1.0 : std::sqrt(3.0), 1e-14);
 }
 
 template <class Build>
@@ -146,7 +162,8 @@ TEST(ClothSprings, NodesInOnePlaceAreRefusedByName) {
   TriangleMesh mesh = make_grid(g);
   mesh.positions[4] = mesh.positions[5];
   for (const std::string& text :
-       {refusal([&] { grid_springs(g, mesh.positions, {}, 0, "curtain"); }), refusal([&] { mesh_springs(mesh, {}, 0, "curtain"); })}) {
+       {refusal([&] { grid_springs(g, mesh.positions, {}, 0, "curtain"); }),
+        refusal([&] { mesh_springs(mesh, {}, 0, "curtain"); })}) {
     EXPECT_NE(text.find("cloth 'curtain'"), std::string::npos) << text;
     EXPECT_NE(text.find("vertices 5 and 6"), std::string::npos) << text;
     EXPECT_NE(text.find("merge"), std::string::npos) << text;

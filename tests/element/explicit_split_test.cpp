@@ -12,11 +12,14 @@ using Models = std::vector<std::unique_ptr<SpringModel>>;
 
 Models one_model(ForceClass force_class, std::vector<Spring> springs) {
   Models models;
-  models.push_back(std::make_unique<SpringModel>(force_class, SpringLawKind::linear, std::move(springs)));
+  models.push_back(
+      std::make_unique<SpringModel>(force_class, SpringLawKind::linear, std::move(springs)));
   return models;
 }
 
-SpringParameters spring(double stiffness, double damping = 0.0) { return {.rest_length = 1.0, .stiffness = stiffness, .damping = damping}; }
+SpringParameters spring(double stiffness, double damping = 0.0) {
+  return {.rest_length = 1.0, .stiffness = stiffness, .damping = damping};
+}
 
 Index count(const Models& models, bool explicitly) {
   Index sum = 0;
@@ -46,21 +49,29 @@ TEST(ExplicitSplit, UniformSpringsStayTogether) {
 TEST(ExplicitSplit, DampingCountsTwice) {
   const std::vector<double> masses(8, 0.01);
   const double h = 1e-3, limit = 0.5 * masses[0] / (2.0 * h);
-  EXPECT_EQ(count(split_by_stability(ring(ForceClass::bend, 8, spring(0.0, 0.999 * limit)), masses, h), true), 8);
-  EXPECT_EQ(count(split_by_stability(ring(ForceClass::bend, 8, spring(0.0, 1.001 * limit)), masses, h), true), 0);
+  EXPECT_EQ(
+      count(split_by_stability(ring(ForceClass::bend, 8, spring(0.0, 0.999 * limit)), masses, h),
+            true),
+      8);
+  EXPECT_EQ(
+      count(split_by_stability(ring(ForceClass::bend, 8, spring(0.0, 1.001 * limit)), masses, h),
+            true),
+      0);
 }
 
 TEST(ExplicitSplit, StretchIsAlwaysImplicit) {
   const std::vector<double> masses(8, 0.01);
-  EXPECT_EQ(count(split_by_stability(ring(ForceClass::stretch, 8, spring(1e-6)), masses, 1e-3), true), 0);
+  EXPECT_EQ(
+      count(split_by_stability(ring(ForceClass::stretch, 8, spring(1e-6)), masses, 1e-3), true), 0);
 }
 
 TEST(ExplicitSplit, LightNodesDecideForTheirSprings) {
   // 0 - 1 - 2 - 3, node 3 light: only its spring is implicit.
   const std::vector<double> masses{1.0, 1.0, 1.0, 1e-4};
   const double h = 0.1;
-  const Models parts =
-      split_by_stability(one_model(ForceClass::shear, {{0, 1, spring(1.0)}, {1, 2, spring(1.0)}, {2, 3, spring(1.0)}}), masses, h);
+  const Models parts = split_by_stability(
+      one_model(ForceClass::shear, {{0, 1, spring(1.0)}, {1, 2, spring(1.0)}, {2, 3, spring(1.0)}}),
+      masses, h);
   ASSERT_EQ(parts.size(), 2u);
   EXPECT_FALSE(parts[0]->stable_explicitly());
   ASSERT_EQ(parts[0]->block_count(), 1);
@@ -80,10 +91,13 @@ TEST(ExplicitSplit, SumsStayBelowOneOnRandomSprings) {
   for (const ForceClass force_class : {ForceClass::stretch, ForceClass::shear, ForceClass::bend}) {
     std::vector<Spring> springs;
     for (int k = 0; k < 200; ++k) {
-      const Index i = static_cast<Index>(random() % nodes), j = static_cast<Index>((i + 1 + random() % (nodes - 1)) % nodes);
-      springs.push_back({i, j, spring(std::pow(10.0, exponent(random)), std::pow(10.0, exponent(random) - 2.0))});
+      const Index i = static_cast<Index>(random() % nodes),
+                  j = static_cast<Index>((i + 1 + random() % (nodes - 1)) % nodes);
+      springs.push_back(
+          {i, j, spring(std::pow(10.0, exponent(random)), std::pow(10.0, exponent(random) - 2.0))});
     }
-    models.push_back(std::make_unique<SpringModel>(force_class, SpringLawKind::linear, std::move(springs)));
+    models.push_back(
+        std::make_unique<SpringModel>(force_class, SpringLawKind::linear, std::move(springs)));
   }
   const Models parts = split_by_stability(std::move(models), masses, h);
   EXPECT_EQ(count(parts, true) + count(parts, false), 600);

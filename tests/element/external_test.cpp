@@ -52,7 +52,8 @@ TEST(ExternalForces, GustsComeAndGo) {
   EXPECT_LT((external.force()[0] - 1.3 * wind.velocity).norm(), 1e-14);
 }
 
-// On a flat sheet of area A and normal n at rest: c A (n·w) n in all; each node has its share of the area.
+// On a flat sheet of area A and normal n at rest: c A (n·w) n in all; each node has its share of
+// the area.
 TEST(ExternalForces, WindPressureOnAFlatSquare) {
   const Vec3 n = Vec3(1, 2, -2) / 3.0;
   const Vec3 u = 0.5 * Vec3(2, 1, 2) / 3.0, v = 0.8 * n.cross(Vec3(2, 1, 2) / 3.0);
@@ -81,7 +82,8 @@ TEST(ExternalForces, DampingIsMinusTheVelocityGradient) {
   const GridShape shape{.nu = 4, .nv = 3};
   TriangleMesh mesh = make_grid(shape);
   for (Vec3& place : mesh.positions) place += random.vector(0.1);
-  ExternalForces external(std::vector<double>(12, 0.1), gravity, {.velocity = Vec3(4, 1, 0), .gust = 0.4});
+  ExternalForces external(std::vector<double>(12, 0.1), gravity,
+                          {.velocity = Vec3(4, 1, 0), .gust = 0.4});
   for (Index i = 0; i < 12; ++i) external.set_drag(i, 0.01 * i);
   external.add_wind_surface(mesh.triangles, 0.9);
   const std::vector<Vec3> v = random.vectors(12, 2.0);
@@ -94,7 +96,8 @@ TEST(ExternalForces, DampingIsMinusTheVelocityGradient) {
       external.evaluate(0.3, mesh.positions, changed);
       return Vec3(external.force()[i]);
     };
-    EXPECT_LT((test::numeric_jacobian(force, v[i], 1e-2) + damping[i]).norm(), 1e-11) << "node " << i;
+    EXPECT_LT((test::numeric_jacobian(force, v[i], 1e-2) + damping[i]).norm(), 1e-11)
+        << "node " << i;
     EXPECT_EQ(damping[i], Mat3(damping[i].transpose()));
     EXPECT_GE(Eigen::SelfAdjointEigenSolver<Mat3>(damping[i]).eigenvalues()[0], -1e-15);
   }

@@ -1,4 +1,5 @@
-// What a linearised step does not foresee about a spring's length, against cases worked out by hand.
+// What a linearised step does not foresee about a spring's length, against cases worked out by
+// hand.
 
 #include "taut/element/overshoot.h"
 
@@ -13,10 +14,13 @@ namespace {
 const SpringParameters unit{.rest_length = 1.0, .stiffness = 10.0};
 
 TEST(Overshoot, TurningIsNotForeseen) {
-  // A quarter circle's worth of straight motion: the end lies at (1, 1), its share along the old direction is 1.
-  EXPECT_NEAR(spring_overshoot(SpringLawKind::linear, unit, Vec3(1, 0, 0), Vec3(1, 1, 0)), std::sqrt(2.0) - 1.0, 1e-15);
+  // A quarter circle's worth of straight motion: the end lies at (1, 1), its share along the old
+  // direction is 1.
+  EXPECT_NEAR(spring_overshoot(SpringLawKind::linear, unit, Vec3(1, 0, 0), Vec3(1, 1, 0)),
+              std::sqrt(2.0) - 1.0, 1e-15);
   // Halving the angle leaves about a quarter: the error is of second order.
-  const double whole = spring_overshoot(SpringLawKind::linear, unit, Vec3(1, 0, 0), Vec3(1, 0.2, 0));
+  const double whole =
+      spring_overshoot(SpringLawKind::linear, unit, Vec3(1, 0, 0), Vec3(1, 0.2, 0));
   const double half = spring_overshoot(SpringLawKind::linear, unit, Vec3(1, 0, 0), Vec3(1, 0.1, 0));
   EXPECT_NEAR(whole / half, 4.0, 0.05);
 }
@@ -38,7 +42,8 @@ TEST(Overshoot, CompressedAtTheEndIsNoOvershoot) {
 }
 
 TEST(Overshoot, ACollapsedSpringHasNoDirection) {
-  EXPECT_NEAR(spring_overshoot(SpringLawKind::linear, unit, Vec3::Zero(), Vec3(0, 1.5, 0)), 0.5, 1e-15);
+  EXPECT_NEAR(spring_overshoot(SpringLawKind::linear, unit, Vec3::Zero(), Vec3(0, 1.5, 0)), 0.5,
+              1e-15);
 }
 
 TEST(Overshoot, TheLargestOfAModelAndNanIsWorst) {

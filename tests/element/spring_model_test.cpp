@@ -17,9 +17,11 @@ constexpr std::array laws{SpringLawKind::linear, SpringLawKind::buckling, Spring
 struct Sample {
   explicit Sample(SpringLawKind law, Index count = 300) {
     test::Random random(7);
-    x = random.vectors(40, 1.0), v = random.vectors(40, 3.0), p = random.vectors(40, 2.0), q = random.vectors(40, 5.0);
+    x = random.vectors(40, 1.0), v = random.vectors(40, 3.0), p = random.vectors(40, 2.0),
+    q = random.vectors(40, 5.0);
     x[1] = x[0];
-    model = std::make_unique<SpringModel>(ForceClass::shear, law, test::random_springs(random, x, count));
+    model = std::make_unique<SpringModel>(ForceClass::shear, law,
+                                          test::random_springs(random, x, count));
   }
   std::vector<Vec3> x, v, p, q;
   std::unique_ptr<SpringModel> model;
@@ -37,21 +39,27 @@ TEST(SpringModel, EqualsTheSpringLawForAllRequests) {
       if (combination & 8) request.stiffness_operand = sample.p;
       if (combination & 16) request.damping_operand = sample.q;
       const double untouched = 123.0;
-      std::vector<double> blocks(9 * static_cast<std::size_t>(sample.model->block_count()), untouched);
-      std::vector<Vec3> vectors(static_cast<std::size_t>(sample.model->vector_count()), Vec3::Constant(untouched));
+      std::vector<double> blocks(9 * static_cast<std::size_t>(sample.model->block_count()),
+                                 untouched);
+      std::vector<Vec3> vectors(static_cast<std::size_t>(sample.model->vector_count()),
+                                Vec3::Constant(untouched));
       sample.model->evaluate(request, blocks, vectors);
       for (std::size_t s = 0; s < vectors.size(); ++s) {
         const auto& [i, j, parameters] = sample.model->springs()[s];
-        const SpringResponse r = spring_response(law, parameters, sample.x[j] - sample.x[i], sample.v[j] - sample.v[i]);
+        const SpringResponse r =
+            spring_response(law, parameters, sample.x[j] - sample.x[i], sample.v[j] - sample.v[i]);
         Vec3 g = request.force * r.force;
         if (combination & 8) g += r.stiffness * (sample.p[i] - sample.p[j]);
         if (combination & 16) g += r.damping * (sample.q[i] - sample.q[j]);
-        const Mat3 expected = request.matrix_stiffness * r.stiffness + request.matrix_damping * r.damping;
+        const Mat3 expected =
+            request.matrix_stiffness * r.stiffness + request.matrix_damping * r.damping;
         const double size = r.force.norm() + 4.0 * r.stiffness.norm() + 10.0 * r.damping.norm();
-        EXPECT_LE((vectors[s] - g).norm(), 1e-13 * size) << "spring " << s << ", request " << combination;
+        EXPECT_LE((vectors[s] - g).norm(), 1e-13 * size)
+            << "spring " << s << ", request " << combination;
         for (int e = 0; e < 9; ++e) {
           const double wanted = request.wants_matrix() ? expected(e / 3, e % 3) : untouched;
-          EXPECT_NEAR(blocks[9 * s + static_cast<std::size_t>(e)], wanted, request.wants_matrix() ? 1e-13 * size : 0.0);
+          EXPECT_NEAR(blocks[9 * s + static_cast<std::size_t>(e)], wanted,
+                      request.wants_matrix() ? 1e-13 * size : 0.0);
         }
       }
     }
@@ -105,7 +113,8 @@ TEST(SpringModel, InnerForcesHaveNoSumAndNoTorque) {
   }
 }
 
-// The crossing of beam and line is found once for springs alike; it must be every spring's own all the same.
+// The crossing of beam and line is found once for springs alike; it must be every spring's own all
+// the same.
 TEST(SpringModel, EverySpringHasItsOwnBeamRange) {
   const Sample sample(SpringLawKind::choi_ko);
   for (const Spring& spring : sample.model->springs()) {
@@ -128,7 +137,8 @@ TEST(SpringModel, LargestStrainIsTheLargestOfAll) {
   EXPECT_NEAR(strains[4320], 0.25, 1e-12);
   EXPECT_NEAR(strains[0], 0.01, 1e-12);
   for (Vec3& place : x) place *= 0.5;
-  EXPECT_NEAR(largest_strain(model, x), 0.5 * 1.25 - 1.0, 1e-12) << "negative when all are compressed";
+  EXPECT_NEAR(largest_strain(model, x), 0.5 * 1.25 - 1.0, 1e-12)
+      << "negative when all are compressed";
 }
 
 }  // namespace

@@ -13,7 +13,8 @@ namespace {
 TEST(BlockFactorMatrices, ResidualOfForeignSystems) {
   const auto data = data_folder();
   if (!data) GTEST_SKIP() << "no test data: set TAUT_DATA";
-  for (const char* name : {"1138_bus.mtx", "LFAT5.mtx", "ani1.mtx", "isai_spd.mtx", "bcsstk13.mtx.gz"}) {
+  for (const char* name :
+       {"1138_bus.mtx", "LFAT5.mtx", "ani1.mtx", "isai_spd.mtx", "bcsstk13.mtx.gz"}) {
     const BlockCsr a = to_system_matrix(read_matrix_market(*data / "matrices" / name), name);
     Random random(1);
     const std::vector<double> b = random.vector(a.dofs());

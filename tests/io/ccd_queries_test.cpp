@@ -10,7 +10,8 @@ namespace taut {
 
 namespace {
 
-const std::filesystem::path file = std::filesystem::temp_directory_path() / "taut_ccd_queries_test.csv";
+const std::filesystem::path file =
+    std::filesystem::temp_directory_path() / "taut_ccd_queries_test.csv";
 
 std::string rows(int count, const std::string& row) {
   std::string text;
@@ -38,7 +39,8 @@ void expect_complaint(const std::string& text, const std::string& place, const s
 
 TEST(CcdQueries, ReadsCornersAndTruth) {
   std::string text;
-  for (int k = 0; k < 8; ++k) text += std::to_string(k) + ",4, -1 ,8,3602879701896397,36028797018963968,1\r\n";
+  for (int k = 0; k < 8; ++k)
+    text += std::to_string(k) + ",4, -1 ,8,3602879701896397,36028797018963968,1\r\n";
   write_file(file, text + "\n" + rows(8, "1,1,2,1,1e3,1,0"));
   const auto queries = read_ccd_queries(file);
   ASSERT_EQ(queries.size(), 2u);

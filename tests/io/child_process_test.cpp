@@ -23,7 +23,8 @@ TEST(ChildProcess, ArgumentsArriveAsTheyAre) {
 
 TEST(ChildProcess, BothOutputsAreHeardHoweverMuchItIs) {
   // More than any pipe holds, in both: who reads one to its end first would wait for ever.
-  const ChildEnd end = run_child({"sh", "-c", "head -c 3000000 /dev/zero >&2; head -c 2000000 /dev/zero; exit 7"}, 20s);
+  const ChildEnd end = run_child(
+      {"sh", "-c", "head -c 3000000 /dev/zero >&2; head -c 2000000 /dev/zero; exit 7"}, 20s);
   EXPECT_EQ(end.outcome, Outcome::exited);
   EXPECT_EQ(end.code, 7);
   EXPECT_EQ(end.output.size(), 2000000u);
@@ -42,7 +43,8 @@ TEST(ChildProcess, PatienceEnds) {
   EXPECT_LT(std::chrono::steady_clock::now() - begin, 50s);
 }
 
-// As under a supervisor that ignores SIGCHLD, which its children inherit: no end may be taken for a good one.
+// As under a supervisor that ignores SIGCHLD, which its children inherit: no end may be taken for a
+// good one.
 TEST(ChildProcess, AnEndThatIsNotToldIsNoGoodEnd) {
   const auto usual = ::signal(SIGCHLD, SIG_IGN);
   EXPECT_THROW(run_child({"sh", "-c", "exit 3"}, 10s), InputError);

@@ -38,7 +38,8 @@ inline void limit_this_process() {
   ::alarm(2);
 }
 
-// The text that `task` returns, or "died: ..." when it crashed, took too long or let an exception out.
+// The text that `task` returns, or "died: ..." when it crashed, took too long or let an exception
+// out.
 inline std::string run_limited(const std::function<std::string()>& task) {
   int ends[2];
   if (::pipe(ends) != 0) return "died: no pipe";
@@ -56,12 +57,14 @@ inline std::string run_limited(const std::function<std::string()>& task) {
   ::close(ends[1]);
   std::string text;
   char piece[4096];
-  for (ssize_t count; (count = ::read(ends[0], piece, sizeof piece)) > 0;) text.append(piece, static_cast<std::size_t>(count));
+  for (ssize_t count; (count = ::read(ends[0], piece, sizeof piece)) > 0;)
+    text.append(piece, static_cast<std::size_t>(count));
   ::close(ends[0]);
   int state = 0;
   ::waitpid(child, &state, 0);
   if (WIFSIGNALED(state))
-    return std::string("died: signal ") + (WTERMSIG(state) == SIGALRM ? "ALRM (2 s are over)" : std::to_string(WTERMSIG(state)));
+    return std::string("died: signal ") +
+           (WTERMSIG(state) == SIGALRM ? "ALRM (2 s are over)" : std::to_string(WTERMSIG(state)));
   return WEXITSTATUS(state) == 0 ? text : "died: exit status " + std::to_string(WEXITSTATUS(state));
 }
 

@@ -15,7 +15,10 @@ TEST(RunLimited, HandsBackTheText) {
 
 TEST(RunLimited, TooMuchMemoryIsSeen) {
   if (!memory_can_be_limited) GTEST_SKIP() << "the memory of a sanitized program cannot be limited";
-  EXPECT_EQ(run_limited([] { return std::string(std::size_t{3} << 29, 'x'); }).rfind("died: exception", 0), 0u);
+  EXPECT_EQ(run_limited([] {
+              return std::string(std::size_t{3} << 29, 'x');
+            }).rfind("died: exception", 0),
+            0u);
 }
 
 TEST(RunLimited, CrashAndHangAreSeen) {

@@ -1,4 +1,5 @@
-// Odd and broken OBJ files that other projects collected: each is read rightly or refused with its place, in 2 s and 1 GB.
+// Odd and broken OBJ files that other projects collected: each is read rightly or refused with its
+// place, in 2 s and 1 GB.
 #include "io/malformed_table.h"
 #include "taut/io/obj.h"
 
@@ -7,7 +8,8 @@ namespace {
 
 std::string obj_summary(const std::filesystem::path& path) {
   const TriangleMesh mesh = read_obj(path);
-  return std::to_string(mesh.positions.size()) + " vertices " + std::to_string(mesh.triangles.size()) + " triangles" +
+  return std::to_string(mesh.positions.size()) + " vertices " +
+         std::to_string(mesh.triangles.size()) + " triangles" +
          (mesh.texcoords.empty() ? "" : " texcoords");
 }
 
@@ -19,13 +21,17 @@ TEST(MalformedObj, EachFileIsReadRightlyOrRefusedWithItsPlace) {
           {"assimp-empty.obj", refused_without_line, "has no vertices"},
           // An `f` without corners.
           {"assimp-malformed2.obj", ":23:1", "a face with 0 corners, at least 3 were expected"},
-          // Forms such as +2. and 2.e+1 in lines 1 to 9 are numbers, 3.1+e2 is none in any notation.
-          {"assimp-number_formats.obj", ":11:14", "z of the vertex is '3.1+e2', a number was expected"},
+          // Forms such as +2. and 2.e+1 in lines 1 to 9 are numbers, 3.1+e2 is none in any
+          // notation.
+          {"assimp-number_formats.obj", ":11:14",
+           "z of the vertex is '3.1+e2', a number was expected"},
           {"assimp-regr_3429812.obj", "", "4 vertices 4 triangles"},
           {"tol-colorspace-issue-184.obj", "", "3 vertices 1 triangles"},
           {"tol-cube-vertexcol.obj", "", "8 vertices 12 triangles"},
-          {"tol-invalid-face-definition.obj", ":15:1", "a face with 1 corner, at least 3 were expected"},
-          {"tol-invalid-relative-vertex-index.obj", ":1:3", "vertex index is '-4', but the file has only 0 so far"},
+          {"tol-invalid-face-definition.obj", ":15:1",
+           "a face with 1 corner, at least 3 were expected"},
+          {"tol-invalid-relative-vertex-index.obj", ":1:3",
+           "vertex index is '-4', but the file has only 0 so far"},
           {"tol-issue-140-zero-face-idx.obj", ":16:3", "vertex index is 0; OBJ counts from 1"},
           {"tol-issue-162-smoothing-group.obj", "", "8 vertices 12 triangles texcoords"},
           {"tol-issue-244-mtl-searchpaths.obj", "", "8 vertices 2 triangles"},
@@ -48,7 +54,8 @@ TEST(MalformedObj, EachFileIsReadRightlyOrRefusedWithItsPlace) {
           {"trimesh-jacked.obj", "", "8 vertices 12 triangles texcoords"},
           // Only colours are NaN.
           {"trimesh-nancolor.obj", "", "8 vertices 12 triangles"},
-          {"trimesh-notenoughindices.obj", ":9:1", "a face with 2 corners, at least 3 were expected"},
+          {"trimesh-notenoughindices.obj", ":9:1",
+           "a face with 2 corners, at least 3 were expected"},
           {"trimesh-polygonfaces.obj", "", "5 vertices 3 triangles"},
       },
       ".obj", obj_summary);

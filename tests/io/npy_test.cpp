@@ -11,14 +11,18 @@
 namespace taut::test {
 namespace {
 
-// A file as numpy 1.x writes numpy.array([[1, 2, 3], [4, 5, 6.5]], "<f4"): byte by byte from the format's description.
+// A file as numpy 1.x writes numpy.array([[1, 2, 3], [4, 5, 6.5]], "<f4"): byte by byte from the
+// format's description.
 std::string numpy_file() {
   std::string header = "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 3), }";
   header.append(128 - 10 - header.size() - 1, ' ');
   header += '\n';
   std::string bytes("\x93NUMPY\x01\x00\x76\x00", 10);
   bytes += header;
-  bytes += std::string("\x00\x00\x80\x3f\x00\x00\x00\x40\x00\x00\x40\x40\x00\x00\x80\x40\x00\x00\xa0\x40\x00\x00\xd0\x40", 24);
+  bytes += std::string(
+      "\x00\x00\x80\x3f\x00\x00\x00\x40\x00\x00\x40\x40\x00\x00\x80\x40\x00\x00\xa0\x40\x00\x00\xd0"
+      "\x40",
+      24);
   return bytes;
 }
 
@@ -62,7 +66,8 @@ TEST(Npy, RoundTripOfEveryTypeAndShape) {
   round_trip<float>({0.1f}, {});
   round_trip<std::int32_t>({-2147483647 - 1, 2147483647}, {2, 1});
   round_trip<std::int32_t>({}, {0, 3});
-  round_trip<float>(std::vector<float>(100, 1.5f), {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 100});
+  round_trip<float>(std::vector<float>(100, 1.5f),
+                    {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 100});
 }
 
 TEST(Npy, NodesKeepTheirBits) {
@@ -74,7 +79,8 @@ TEST(Npy, NodesKeepTheirBits) {
   write_npy_float(folder / "f.npy", nodes);
   const std::vector<Vec3> rounded = read_npy_nodes(folder / "f.npy");
   ASSERT_EQ(rounded.size(), nodes.size());
-  for (std::size_t i = 0; i < nodes.size(); ++i) EXPECT_EQ(rounded[i], nodes[i].cast<float>().cast<double>());
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    EXPECT_EQ(rounded[i], nodes[i].cast<float>().cast<double>());
   write_npy<double>(folder / "y.npy", std::vector<double>(4), std::vector<std::int64_t>{2, 2});
   EXPECT_THROW(read_npy_nodes(folder / "y.npy"), InputError);
 }
@@ -89,26 +95,38 @@ TEST(Npy, RefusalsSayWhatIsWrong) {
   EXPECT_EQ(refusal<double>(good).rfind("holds numbers of type '<f4', '<f8' was expected", 0), 0u);
   EXPECT_EQ(refusal<float>(with("<f4", ">f4")).rfind("holds numbers of type '>f4'", 0), 0u);
   EXPECT_EQ(refusal<float>(with("False, ", "True,  ")).rfind("is in Fortran order", 0), 0u);
-  EXPECT_EQ(refusal<float>(with("(2, 3)", "(2, 4)")).rfind("has 24 bytes of data, which is not 2 x 4 numbers of 4 bytes", 0), 0u);
-  EXPECT_EQ(refusal<float>(with("(2, 3), }              ", "(4294967296,4294967296)")).rfind("the .npy header lacks '}'", 0), 0u);
-  EXPECT_EQ(refusal<float>(with("(2, 3), }                 ", "(4294967296,4294967296), }")).rfind("has 24 bytes of data, which is not", 0),
+  EXPECT_EQ(refusal<float>(with("(2, 3)", "(2, 4)"))
+                .rfind("has 24 bytes of data, which is not 2 x 4 numbers of 4 bytes", 0),
             0u);
-  EXPECT_EQ(refusal<float>(with("(2, 3)", "(-2,3)")).rfind("the .npy header has a shape with", 0), 0u);
-  EXPECT_EQ(refusal<float>(with("'shape'", "'shapo'")).rfind("the .npy header has an unknown key 'shapo'", 0), 0u);
+  EXPECT_EQ(refusal<float>(with("(2, 3), }              ", "(4294967296,4294967296)"))
+                .rfind("the .npy header lacks '}'", 0),
+            0u);
+  EXPECT_EQ(refusal<float>(with("(2, 3), }                 ", "(4294967296,4294967296), }"))
+                .rfind("has 24 bytes of data, which is not", 0),
+            0u);
+  EXPECT_EQ(refusal<float>(with("(2, 3)", "(-2,3)")).rfind("the .npy header has a shape with", 0),
+            0u);
+  EXPECT_EQ(refusal<float>(with("'shape'", "'shapo'"))
+                .rfind("the .npy header has an unknown key 'shapo'", 0),
+            0u);
   EXPECT_EQ(refusal<float>("PK\x03\x04 an .npz archive").rfind("is not a .npy file", 0), 0u);
-  EXPECT_EQ(refusal<float>(with(std::string("\x01\x00", 2), std::string("\x09\x00", 2))).rfind("has .npy version 9", 0), 0u);
+  EXPECT_EQ(refusal<float>(with(std::string("\x01\x00", 2), std::string("\x09\x00", 2)))
+                .rfind("has .npy version 9", 0),
+            0u);
 }
 
 TEST(Npy, CutAnywhereItIsRefused) {
   const std::string good = numpy_file();
-  for (std::size_t length = 0; length < good.size(); ++length) EXPECT_NE(refusal<float>(good.substr(0, length)), "read") << length;
+  for (std::size_t length = 0; length < good.size(); ++length)
+    EXPECT_NE(refusal<float>(good.substr(0, length)), "read") << length;
   EXPECT_NE(refusal<float>(good + "x"), "read");
 }
 
 // The first Python that has NumPy: where another one stands before Debian's, that has it.
 std::string python_with_numpy() {
   for (const char* python : {"python3", "/usr/bin/python3"})
-    if (std::system((std::string(python) + " -c 'import numpy' 2>/dev/null").c_str()) == 0) return python;
+    if (std::system((std::string(python) + " -c 'import numpy' 2>/dev/null").c_str()) == 0)
+      return python;
   return {};
 }
 
@@ -117,8 +135,10 @@ TEST(Npy, NumpyItselfAgrees) {
   if (python.empty()) GTEST_SKIP() << "python3 with numpy is not installed";
   const TemporaryFolder folder;
   write_npy(folder / "x.npy", std::vector<Vec3>{{1, 2, 3}, {4, 5, 6.5}});
-  const std::string command = python + " -c 'import numpy, sys; a = numpy.load(\"" + (folder / "x.npy").string() +
-                              "\"); assert a.shape == (2, 3) and a.dtype == numpy.float64 and a[1, 2] == 6.5; numpy.save(\"" +
+  const std::string command = python + " -c 'import numpy, sys; a = numpy.load(\"" +
+                              (folder / "x.npy").string() +
+                              "\"); assert a.shape == (2, 3) and a.dtype == numpy.float64 and a[1, "
+                              "2] == 6.5; numpy.save(\"" +
                               (folder / "y.npy").string() + "\", a * 2)'";
   ASSERT_EQ(std::system(command.c_str()), 0);
   EXPECT_EQ(read_npy_nodes(folder / "y.npy"), (std::vector<Vec3>{{2, 4, 6}, {8, 10, 13}}));

@@ -36,8 +36,9 @@ TEST(ReadObj, AllIndexForms) {
   const std::string text = square + "vt 0 0\nvt 1 0\nvt 1 1\nvn 0 0 1\n";
   const Triangle first = {0, 1, 2};
   for (const char* face :
-       {"f 1 2 3", "f 1/1 2/2 3/3", "f 1//1 2//1 3//1", "f 1/1/1 2/2/1 3/3/1", "f -4 -3 -2", "f -4/-3/-1 -3/-2/-1 -2/-1/-1", "f 1/ 2/ 3/",
-        "f +1 2 3", "  f\t1  2 3  ", "f 1 2 3 # a comment", "f 1 \\\n 2 3", "f 1 2 \\\r\n 3", "fo 1 2 3"}) {
+       {"f 1 2 3", "f 1/1 2/2 3/3", "f 1//1 2//1 3//1", "f 1/1/1 2/2/1 3/3/1", "f -4 -3 -2",
+        "f -4/-3/-1 -3/-2/-1 -2/-1/-1", "f 1/ 2/ 3/", "f +1 2 3", "  f\t1  2 3  ",
+        "f 1 2 3 # a comment", "f 1 \\\n 2 3", "f 1 2 \\\r\n 3", "fo 1 2 3"}) {
     const TriangleMesh mesh = parse(text + face);
     ASSERT_EQ(mesh.triangles.size(), 1u) << face;
     EXPECT_EQ(mesh.triangles[0], first) << face;
@@ -52,14 +53,16 @@ TEST(ReadObj, RelativeIndicesCountFromTheFaceNotFromTheEnd) {
 }
 
 TEST(ReadObj, NumbersInEveryNotation) {
-  const TriangleMesh mesh = parse("v +1.5 -.5 2.\nv 1e2 1E-002 .8e-001\nv 1e-400 -0 0.1\nf 1 2 3\n");
+  const TriangleMesh mesh =
+      parse("v +1.5 -.5 2.\nv 1e2 1E-002 .8e-001\nv 1e-400 -0 0.1\nf 1 2 3\n");
   EXPECT_EQ(mesh.positions[0], Vec3(1.5, -0.5, 2));
   EXPECT_EQ(mesh.positions[1], Vec3(100, 0.01, 0.08));
   EXPECT_EQ(mesh.positions[2], Vec3(0, 0, 0.1));
 }
 
 TEST(ReadObj, LineEndsByteOrderMarkAndColours) {
-  for (const char* text : {"\xef\xbb\xbfv 0 0 0\r\nv 1 0 0\r\nv 0 1 0\r\nf 1 2 3", "v 0 0 0\rv 1 0 0\rv 0 1 0\rf 1 2 3\r",
+  for (const char* text : {"\xef\xbb\xbfv 0 0 0\r\nv 1 0 0\r\nv 0 1 0\r\nf 1 2 3",
+                           "v 0 0 0\rv 1 0 0\rv 0 1 0\rf 1 2 3\r",
                            "v 0 0 0 1 0.5 nan\nv 1 0 0 1\nv 0 1 0 1 1 1 1\nf 1 2 3\n"}) {
     const TriangleMesh mesh = parse(text);
     ASSERT_EQ(mesh.positions.size(), 3u);
@@ -73,10 +76,13 @@ TEST(ReadObj, CommentThatEndsInABackslashDoesNotSwallowTheNextLine) {
 }
 
 TEST(ReadObj, FacesMayNameLaterVertices) {
-  EXPECT_EQ(parse("f 1 2 3\nv 0 0 0\nv 1 0 0\nv 0 1 0\n").triangles, (std::vector<Triangle>{{0, 1, 2}}));
+  EXPECT_EQ(parse("f 1 2 3\nv 0 0 0\nv 1 0 0\nv 0 1 0\n").triangles,
+            (std::vector<Triangle>{{0, 1, 2}}));
 }
 
-TEST(ReadObj, PolygonsBecomeFans) { EXPECT_EQ(parse(square + "f 1 2 3 4").triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}})); }
+TEST(ReadObj, PolygonsBecomeFans) {
+  EXPECT_EQ(parse(square + "f 1 2 3 4").triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}}));
+}
 
 TEST(ReadObj, FanOfADentedPolygonDoesNotFoldOver) {
   // The dent is at vertex 4: a fan from vertex 1 would cover the outside of it.
@@ -84,7 +90,8 @@ TEST(ReadObj, FanOfADentedPolygonDoesNotFoldOver) {
   const TriangleMesh mesh = parse("v 0 0 0\nv 4 0 0\nv 0 4 0\nv 1 1 0\nf 1 2 3 4\n", &notes);
   double area = 0;
   for (const Triangle& t : mesh.triangles) {
-    const Vec3 a = mesh.positions[t[1]] - mesh.positions[t[0]], b = mesh.positions[t[2]] - mesh.positions[t[0]];
+    const Vec3 a = mesh.positions[t[1]] - mesh.positions[t[0]],
+               b = mesh.positions[t[2]] - mesh.positions[t[0]];
     EXPECT_GE(a.x() * b.y() - a.y() * b.x(), 0.0);
     area += 0.5 * (a.x() * b.y() - a.y() * b.x());
   }
@@ -96,16 +103,19 @@ TEST(ReadObj, PolygonThatNoFanFitsIsNoted) {
   // A comb with three teeth: no corner sees all others.
   std::vector<std::string> notes;
   parse(
-      "v 0 0 0\nv 5 0 0\nv 5 3 0\nv 4 3 0\nv 4 1 0\nv 3 1 0\nv 3 3 0\nv 2 3 0\nv 2 1 0\nv 1 1 0\nv 1 3 0\nv 0 3 0\nf 1 2 3 4 5 6 7 8 9 10 "
+      "v 0 0 0\nv 5 0 0\nv 5 3 0\nv 4 3 0\nv 4 1 0\nv 3 1 0\nv 3 3 0\nv 2 3 0\nv 2 1 0\nv 1 1 0\nv "
+      "1 3 0\nv 0 3 0\nf 1 2 3 4 5 6 7 8 9 10 "
       "11 12\n",
       &notes);
   ASSERT_EQ(notes.size(), 1u);
-  EXPECT_NE(notes[0].find("mesh.obj:13: a face with 12 corners has dents"), std::string::npos) << notes[0];
+  EXPECT_NE(notes[0].find("mesh.obj:13: a face with 12 corners has dents"), std::string::npos)
+      << notes[0];
 }
 
 TEST(ReadObj, TexcoordsOnePerVertexTheFirstCounts) {
   std::vector<std::string> notes;
-  const TriangleMesh mesh = parse(square + "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1 0\nvt .5\nf 1/1 2/2 3/3\nf 1/5 3/3 4/4\n", &notes);
+  const TriangleMesh mesh = parse(
+      square + "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1 0\nvt .5\nf 1/1 2/2 3/3\nf 1/5 3/3 4/4\n", &notes);
   EXPECT_EQ(mesh.texcoords, (std::vector<Vec2>{{0, 0}, {1, 0}, {1, 1}, {0, 1}}));
   ASSERT_EQ(notes.size(), 1u);
   EXPECT_NE(notes[0].find("1 vertex on texture seams"), std::string::npos) << notes[0];
@@ -114,28 +124,45 @@ TEST(ReadObj, TexcoordsOnePerVertexTheFirstCounts) {
 
 TEST(ReadObj, UnknownStatementsAreNotedOnce) {
   std::vector<std::string> notes;
-  parse("mtllib a.mtl\ng x\no y\ns off\n" + square + "f 1 2 3\nstitch 1 2 3 0.5\nstitch 1 2 3 0.5\n", &notes);
+  parse(
+      "mtllib a.mtl\ng x\no y\ns off\n" + square + "f 1 2 3\nstitch 1 2 3 0.5\nstitch 1 2 3 0.5\n",
+      &notes);
   ASSERT_EQ(notes.size(), 1u);
-  EXPECT_NE(notes[0].find("mesh.obj:10: the statement 'stitch' is not OBJ"), std::string::npos) << notes[0];
+  EXPECT_NE(notes[0].find("mesh.obj:10: the statement 'stitch' is not OBJ"), std::string::npos)
+      << notes[0];
 }
 
 TEST(ReadObj, RefusalsNameLineAndColumn) {
-  EXPECT_EQ(refusal(square + "f 1 2 5\n").rfind(":5:7: index 5 is beyond the 4 vertices of the file", 0), 0u)
+  EXPECT_EQ(
+      refusal(square + "f 1 2 5\n").rfind(":5:7: index 5 is beyond the 4 vertices of the file", 0),
+      0u)
       << refusal(square + "f 1 2 5\n");
-  EXPECT_EQ(refusal(square + "f 1 2 3\nf 1 2 99999999999999999999\n").rfind(":6:7: vertex index is '99999999999999999999'", 0), 0u);
+  EXPECT_EQ(refusal(square + "f 1 2 3\nf 1 2 99999999999999999999\n")
+                .rfind(":6:7: vertex index is '99999999999999999999'", 0),
+            0u);
   EXPECT_EQ(refusal(square + "f 1 2 -5\n").rfind(":5:7: vertex index is '-5'", 0), 0u);
-  EXPECT_EQ(refusal(square + "f 1/2 2/1 3/1\nvt 0 0\n").rfind(":5:3: index 2 is beyond the 1 texture coordinate ", 0), 0u);
-  EXPECT_EQ(refusal(square + "f 1 2 x\n").rfind(":5:7: vertex index is 'x', a whole number was expected", 0), 0u);
+  EXPECT_EQ(refusal(square + "f 1/2 2/1 3/1\nvt 0 0\n")
+                .rfind(":5:3: index 2 is beyond the 1 texture coordinate ", 0),
+            0u);
+  EXPECT_EQ(refusal(square + "f 1 2 x\n")
+                .rfind(":5:7: vertex index is 'x', a whole number was expected", 0),
+            0u);
   EXPECT_EQ(refusal(square + "f 1 2 1.5\n").rfind(":5:7: ", 0), 0u);
-  EXPECT_EQ(refusal(square + "f 1 2 3/a/1\n").rfind(":5:7: texture coordinate index is 'a'", 0), 0u);
+  EXPECT_EQ(refusal(square + "f 1 2 3/a/1\n").rfind(":5:7: texture coordinate index is 'a'", 0),
+            0u);
   EXPECT_EQ(refusal(square + "f 1 2 3//a\n").rfind(":5:7: normal index is 'a'", 0), 0u);
-  EXPECT_EQ(refusal("v 0 0\n").rfind(":1:6: z of the vertex is missing", 0), 0u) << refusal("v 0 0\n");
-  EXPECT_EQ(refusal("v 0 0 1e999\n").rfind(":1:7: z of the vertex is '1e999', a finite number", 0), 0u);
-  EXPECT_EQ(refusal("v 0 -inf 1\n").rfind(":1:5: y of the vertex is '-inf', a finite number", 0), 0u);
+  EXPECT_EQ(refusal("v 0 0\n").rfind(":1:6: z of the vertex is missing", 0), 0u)
+      << refusal("v 0 0\n");
+  EXPECT_EQ(refusal("v 0 0 1e999\n").rfind(":1:7: z of the vertex is '1e999', a finite number", 0),
+            0u);
+  EXPECT_EQ(refusal("v 0 -inf 1\n").rfind(":1:5: y of the vertex is '-inf', a finite number", 0),
+            0u);
   EXPECT_EQ(refusal("v 0 0 0 red\n").rfind(":1:9: found 'red'", 0), 0u);
   EXPECT_EQ(refusal("v 0 0 \\\n  x\n").rfind(":2:3: z of the vertex is 'x'", 0), 0u);
   EXPECT_EQ(refusal(square).rfind(": has 4 vertices but no faces", 0), 0u);
-  EXPECT_EQ(refusal(std::string_view("v 0 0 0\n\0", 9)).rfind(": is not a text file: byte 9 is zero", 0), 0u);
+  EXPECT_EQ(
+      refusal(std::string_view("v 0 0 0\n\0", 9)).rfind(": is not a text file: byte 9 is zero", 0),
+      0u);
 }
 
 TEST(ReadObj, FolderAndMissingFileAreRefused) {
@@ -149,24 +176,28 @@ TEST(ReadObj, GzipIsUnpackedAndADamagedOneRefused) {
   const std::string path = (folder / "mesh.obj.gz").string();
   const gzFile packed = gzopen(path.c_str(), "wb");
   const std::string text = square + "f 1 2 3\n";
-  ASSERT_EQ(gzwrite(packed, text.data(), static_cast<unsigned>(text.size())), static_cast<int>(text.size()));
+  ASSERT_EQ(gzwrite(packed, text.data(), static_cast<unsigned>(text.size())),
+            static_cast<int>(text.size()));
   gzclose(packed);
   EXPECT_EQ(read_obj(path).positions.size(), 4u);
   const std::string bytes = read_file(path);
   for (std::size_t length = 2; length < bytes.size(); ++length)
-    EXPECT_THROW(read_obj(folder.file("cut.obj.gz", bytes.substr(0, length))), InputError) << length;
+    EXPECT_THROW(read_obj(folder.file("cut.obj.gz", bytes.substr(0, length))), InputError)
+        << length;
 }
 
 TEST(ReadObj, CutAnywhereItIsReadOrRefused) {
   const std::string text =
-      "\xef\xbb\xbf# c\nmtllib a.mtl\n" + square + "vt 0 0\nvt 1 0\nvn 0 0 1\nf 1/1/1 2/2/1 \\\n 3/2/1\r\nf -4//-1 -2//-1 -1//-1\n";
+      "\xef\xbb\xbf# c\nmtllib a.mtl\n" + square +
+      "vt 0 0\nvt 1 0\nvn 0 0 1\nf 1/1/1 2/2/1 \\\n 3/2/1\r\nf -4//-1 -2//-1 -1//-1\n";
   int read = 0;
   for (std::size_t length = 0; length <= text.size(); ++length) {
     try {
       const TriangleMesh mesh = parse(std::string_view(text).substr(0, length));
       ++read;
       for (const Triangle& t : mesh.triangles)
-        for (const Index v : t) EXPECT_TRUE(v >= 0 && v < static_cast<Index>(mesh.positions.size()));
+        for (const Index v : t)
+          EXPECT_TRUE(v >= 0 && v < static_cast<Index>(mesh.positions.size()));
     } catch (const InputError&) {
     }
   }
@@ -204,7 +235,8 @@ TEST(ReadObj, TShirtBodyAndDress) {
   EXPECT_NO_THROW(check_cloth_mesh(shirt, "tshirt.obj"));
   const Topology topology = build_topology(shirt);
   EXPECT_EQ(topology.hinges.size() + topology.boundary_edges.size(), topology.edges.size());
-  EXPECT_EQ(2 * topology.hinges.size() + topology.boundary_edges.size(), 3 * shirt.triangles.size());
+  EXPECT_EQ(2 * topology.hinges.size() + topology.boundary_edges.size(),
+            3 * shirt.triangles.size());
   // A shirt has four holes: V - E + F = 2 - 4.
   EXPECT_EQ(2799 - static_cast<int>(topology.edges.size()) + 5483, -2);
   const TriangleMesh body = read_obj(*data / "body/body_rest_tri.obj");

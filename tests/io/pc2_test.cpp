@@ -14,7 +14,8 @@ namespace {
 // Bytes to a number by arithmetic, independent of the writer's way.
 std::uint32_t word(const std::string& bytes, std::size_t at) {
   std::uint32_t value = 0;
-  for (std::size_t k = 4; k-- > 0;) value = value * 256 + static_cast<unsigned char>(bytes.at(at + k));
+  for (std::size_t k = 4; k-- > 0;)
+    value = value * 256 + static_cast<unsigned char>(bytes.at(at + k));
   return value;
 }
 
@@ -58,11 +59,14 @@ TEST(Pc2Writer, APlaceThatCannotBeWrittenIsRefused) {
     Pc2Writer writer(folder / "a file/cloth.pc2", 1);
     FAIL() << "no InputError";
   } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("cloth.pc2: cannot be written: Not a directory"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("cloth.pc2: cannot be written: Not a directory"),
+              std::string::npos)
+        << error.what();
   }
 }
 
-// A cache of two samples of one point, byte by byte from the format's description; `patch` replaces bytes from `at` on.
+// A cache of two samples of one point, byte by byte from the format's description; `patch` replaces
+// bytes from `at` on.
 std::string cache_bytes(std::size_t at = 0, std::string_view patch = {}) {
   std::string bytes("POINTCACHE2\0\1\0\0\0\1\0\0\0\0\0\x80\x3f\0\0\0\x3f\2\0\0\0", 32);
   bytes += std::string("\0\0\x80\x3f\0\0\0\xc0\0\0\0\x3f\0\0\xd0\x40\0\0\0\0\xcd\xcc\xcc\x3d", 24);
@@ -85,7 +89,8 @@ TEST(ReadPc2, RoundTrip) {
   Pc2Writer writer(folder / "cloth.pc2", 3, -4.0F, 2.0F);
   std::vector<Vec3> positions;
   for (int k = 0; k < 12; ++k) positions.emplace_back(k, 0.1F * static_cast<float>(k), -1e30F);
-  for (std::size_t sample = 0; sample < 4; ++sample) writer.add_sample(std::span(positions).subspan(3 * sample, 3));
+  for (std::size_t sample = 0; sample < 4; ++sample)
+    writer.add_sample(std::span(positions).subspan(3 * sample, 3));
   writer.finish();
   const PointCache cache = read_pc2(folder / "cloth.pc2");
   EXPECT_EQ(cache.positions, positions);
@@ -96,21 +101,23 @@ TEST(ReadPc2, RoundTrip) {
 TEST(ReadPc2, RefusesWhatIsNoWholeCache) {
   const TemporaryFolder folder;
   const std::string whole = cache_bytes();
-  const std::string nan("\0\0\xc0\x7f", 4), huge("\xff\xff\xff\x7f", 4), none(4, '\0'), minus("\xff\xff\xff\xff", 4);
-  const std::vector<std::pair<std::string, std::string>> bad{{"", "is no PC2"},
-                                                             {whole.substr(0, 31), "is no PC2"},
-                                                             {cache_bytes(3, "x"), "is no PC2"},
-                                                             {cache_bytes(12, "\2"), "version 2"},
-                                                             {whole.substr(0, 55), "has 55 bytes, but 1 points in 2 samples take 56"},
-                                                             {whole + "x", "has 57 bytes"},
-                                                             {cache_bytes(16, none), "holds 0 points"},
-                                                             {cache_bytes(16, minus), "holds -1 points"},
-                                                             {cache_bytes(16, huge), "has 56 bytes, but 2147483647 points in 2"},
-                                                             {cache_bytes(28, none), "0 samples"},
-                                                             {cache_bytes(20, nan), "first frame"},
-                                                             {cache_bytes(24, none), "has 0 frames between samples"},
-                                                             {cache_bytes(24, nan), "frames between samples"},
-                                                             {cache_bytes(32 + 16, nan), "sample 1, point 0: a coordinate is not finite"}};
+  const std::string nan("\0\0\xc0\x7f", 4), huge("\xff\xff\xff\x7f", 4), none(4, '\0'),
+      minus("\xff\xff\xff\xff", 4);
+  const std::vector<std::pair<std::string, std::string>> bad{
+      {"", "is no PC2"},
+      {whole.substr(0, 31), "is no PC2"},
+      {cache_bytes(3, "x"), "is no PC2"},
+      {cache_bytes(12, "\2"), "version 2"},
+      {whole.substr(0, 55), "has 55 bytes, but 1 points in 2 samples take 56"},
+      {whole + "x", "has 57 bytes"},
+      {cache_bytes(16, none), "holds 0 points"},
+      {cache_bytes(16, minus), "holds -1 points"},
+      {cache_bytes(16, huge), "has 56 bytes, but 2147483647 points in 2"},
+      {cache_bytes(28, none), "0 samples"},
+      {cache_bytes(20, nan), "first frame"},
+      {cache_bytes(24, none), "has 0 frames between samples"},
+      {cache_bytes(24, nan), "frames between samples"},
+      {cache_bytes(32 + 16, nan), "sample 1, point 0: a coordinate is not finite"}};
   for (const auto& [bytes, said] : bad) {
     const std::filesystem::path path = folder.file("bad.pc2", bytes);
     try {

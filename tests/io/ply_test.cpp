@@ -14,7 +14,8 @@
 namespace taut::test {
 namespace {
 
-// A square with a triangle beside it, colours that are no coordinates, an element that is passed over.
+// A square with a triangle beside it, colours that are no coordinates, an element that is passed
+// over.
 constexpr const char* text_file = R"(ply
 format ascii 1.0
 comment by hand
@@ -67,8 +68,10 @@ std::string binary_file(bool big_endian) {
   bytes.replace(bytes.find("ascii"), 5, big_endian ? "binary_big_endian" : "binary_little_endian");
   const auto put = [&](auto value) { append(bytes, value, big_endian); };
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    put(static_cast<float>(positions[i].x())), put(positions[i].y()), put(static_cast<float>(positions[i].z()));
-    put(std::uint8_t{255}), put(static_cast<float>(texcoords[i].x())), put(static_cast<float>(texcoords[i].y()));
+    put(static_cast<float>(positions[i].x())), put(positions[i].y()),
+        put(static_cast<float>(positions[i].z()));
+    put(std::uint8_t{255}), put(static_cast<float>(texcoords[i].x())),
+        put(static_cast<float>(texcoords[i].y()));
   }
   for (const int end : {0, 1}) put(end);
   put(std::uint8_t{7}), put(std::uint8_t{4});
@@ -106,13 +109,16 @@ TEST(ReadPly, GzipAndExtensions) {
   gzwrite(file, bytes.data(), static_cast<unsigned>(bytes.size()));
   gzclose(file);
   check_mesh(read_mesh(packed));
-  EXPECT_EQ(read_mesh(folder.file("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")).triangles.size(), 1u);
+  EXPECT_EQ(
+      read_mesh(folder.file("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")).triangles.size(), 1u);
   EXPECT_THROW(read_mesh(folder.file("t.stl", text_file)), InputError);
 }
 
 TEST(ReadPly, WhatIsWrittenReadsBack) {
   const TemporaryFolder folder;
-  TriangleMesh mesh{{{0.1F, -2e30F, 3}, {1, 0, 0}, {0, 1, 1e-30F}}, {{0, 1, 2}, {2, 1, 0}}, {{0.25, 1}, {0, 0.1F}, {7, 8}}};
+  TriangleMesh mesh{{{0.1F, -2e30F, 3}, {1, 0, 0}, {0, 1, 1e-30F}},
+                    {{0, 1, 2}, {2, 1, 0}},
+                    {{0.25, 1}, {0, 0.1F}, {7, 8}}};
   for (int with_texcoords = 1; with_texcoords >= 0; --with_texcoords) {
     if (!with_texcoords) mesh.texcoords.clear();
     write_ply(folder / "b.ply", mesh);
@@ -144,10 +150,13 @@ TEST(ReadPly, RefusesWithThePlace) {
       {replaced(text, "vertex 5", "vertex 4294967301"), ":4: more than 2147483647"},
       {replaced(text, "element edge", "element vertex"), ":11:9: a second element 'vertex'"},
       {replaced(text, "element vertex 5", "comment"), ":5:1: a property before the first element"},
-      {replaced(text, "property double y", "property double w"), ":4: the element vertex has no property 'y'"},
+      {replaced(text, "property double y", "property double w"),
+       ":4: the element vertex has no property 'y'"},
       {replaced(text, "property float z", "property quad z"), ":7:10: the type is 'quad'"},
-      {replaced(text, "list uchar int", "list float int"), "the length of a list is a whole number"},
-      {replaced(text, "list uchar int", "list uchar float"), ":14: the element face has no list of whole numbers"},
+      {replaced(text, "list uchar int", "list float int"),
+       "the length of a list is a whole number"},
+      {replaced(text, "list uchar int", "list uchar float"),
+       ":14: the element face has no list of whole numbers"},
       {replaced(text, "vertex_index", "corners"), ":14: the element face has no list"},
       {replaced(text, "face 2", "face 0"), "has 5 vertices but no faces"},
       {replaced(text, "1.25", "nan"), "vertex 2: y is nan, a finite number was expected"},
@@ -155,20 +164,26 @@ TEST(ReadPly, RefusesWithThePlace) {
       {replaced(text, "1.25", "one"), ":21:3: found 'one', a number was expected"},
       {replaced(text, "7 3 1 4 2\n", ""), ":26:1: the file ends before all elements"},
       {replaced(text, "7 3 1 4 2", "7 3 1 4"), ":26:8: a number is missing"},
-      {replaced(text, "7 3 1 4 2", "7 3 1 4 2 2"), ":26:11: found '2', the end of the line was expected"},
-      {replaced(text, "7 3 1 4 2", "7 3 1 4.5 2"), ":26:7: found '4.5', a whole number was expected"},
-      {replaced(text, "7 3 1 4 2", "7 3 1 5 2"), ":26:7: face 1 names vertex 5, 0 to 4 was expected"},
+      {replaced(text, "7 3 1 4 2", "7 3 1 4 2 2"),
+       ":26:11: found '2', the end of the line was expected"},
+      {replaced(text, "7 3 1 4 2", "7 3 1 4.5 2"),
+       ":26:7: found '4.5', a whole number was expected"},
+      {replaced(text, "7 3 1 4 2", "7 3 1 5 2"),
+       ":26:7: face 1 names vertex 5, 0 to 4 was expected"},
       {replaced(text, "7 3 1 4 2", "7 3 1 -1 2"), ":26:7: face 1 names vertex -1"},
       {replaced(text, "7 3 1 4 2", "7 2 1 4"), ":26:3: face 1 has 2 corners"},
       {replaced(text, "7 3 1 4 2", "7 3000000000 1 4"), ":26:3: face 1: a list of 3e+09 numbers"},
       {replaced(text, "7 3 1 4 2", "7 -3 1 4"), ":26:3: face 1: a list of -3 numbers"},
-      {binary.substr(0, header.size() + 30), fmt::format("ends at byte {}, before all elements", header.size() + 30)},
-      {binary.substr(0, binary.size() - 1), "face 1: a list of 3 numbers, which is more than the rest of the file holds"},
+      {binary.substr(0, header.size() + 30),
+       fmt::format("ends at byte {}, before all elements", header.size() + 30)},
+      {binary.substr(0, binary.size() - 1),
+       "face 1: a list of 3 numbers, which is more than the rest of the file holds"},
       {replaced(binary, "vertex 5", "vertex 2000000000"), "before all elements"},
-      {far_index, fmt::format("face 1 names vertex 5, 0 to 4 was expected (byte {})", binary.size() - 3)},
-      {nan_vertex,
-       fmt::format("vertex 1: x is nan, a finite number was expected; mend this vertex in the program that wrote the file (byte {})",
-                   header.size() + 26)}};
+      {far_index,
+       fmt::format("face 1 names vertex 5, 0 to 4 was expected (byte {})", binary.size() - 3)},
+      {nan_vertex, fmt::format("vertex 1: x is nan, a finite number was expected; mend this vertex "
+                               "in the program that wrote the file (byte {})",
+                               header.size() + 26)}};
   for (const auto& [bytes, said] : bad) {
     const std::filesystem::path path = folder.file("bad.ply", bytes);
     try {
@@ -176,14 +191,17 @@ TEST(ReadPly, RefusesWithThePlace) {
       ADD_FAILURE() << "read: " << said;
     } catch (const InputError& error) {
       EXPECT_EQ(std::string(error.what()).rfind(path.string(), 0), 0u) << error.what();
-      EXPECT_NE(std::string(error.what()).find(said), std::string::npos) << "expected '" << said << "', found: " << error.what();
+      EXPECT_NE(std::string(error.what()).find(said), std::string::npos)
+          << "expected '" << said << "', found: " << error.what();
     }
   }
 }
 
 TEST(ReadPly, AnElementWithoutPropertiesTakesNoTime) {
   const TemporaryFolder folder;
-  check_mesh(read_ply(folder.file("a.ply", replaced(text_file, "element face", "element nothing 9000000000000000000\nelement face"))));
+  check_mesh(read_ply(folder.file(
+      "a.ply",
+      replaced(text_file, "element face", "element nothing 9000000000000000000\nelement face"))));
 }
 
 // Whatever bytes are wrong: a mesh whose indices fit, or an InputError. Sanitizers look on.
@@ -194,7 +212,8 @@ TEST(ReadPly, DamagedFilesDoNoHarm) {
   for (const std::string& whole : {std::string(text_file), binary_file(false)}) {
     for (int trial = 0; trial < 400; ++trial) {
       std::string bytes = whole;
-      for (unsigned n = 1 + random() % 3; n > 0; --n) bytes[random() % bytes.size()] = static_cast<char>(random());
+      for (unsigned n = 1 + random() % 3; n > 0; --n)
+        bytes[random() % bytes.size()] = static_cast<char>(random());
       if (trial % 4 == 0) bytes.resize(random() % bytes.size());
       try {
         const TriangleMesh mesh = read_ply(folder.file("a.ply", bytes));

@@ -1,4 +1,5 @@
-// What every format promises. What is in the files is read back by other libraries: tests/apps/export_test.cpp.
+// What every format promises. What is in the files is read back by other libraries:
+// tests/apps/export_test.cpp.
 #include "taut/io/sequence_writer.h"
 
 #include <gtest/gtest.h>
@@ -18,9 +19,18 @@ namespace fs = std::filesystem;
 
 // A triangle that moves and one that does not, with names that no file should have.
 std::vector<SequenceObject> two_objects() {
-  SequenceObject cloth{.name = "a/b \"c\"", .triangles = {{0, 1, 2}}, .texcoords = {{0, 0}, {1, 0}, {0.25, 1}}, .points = 3, .stem = {}};
-  SequenceObject solid{
-      .name = "a b c ", .triangles = {{0, 1, 2}}, .texcoords = {}, .points = 3, .moves = false, .is_cloth = false, .stem = {}};
+  SequenceObject cloth{.name = "a/b \"c\"",
+                       .triangles = {{0, 1, 2}},
+                       .texcoords = {{0, 0}, {1, 0}, {0.25, 1}},
+                       .points = 3,
+                       .stem = {}};
+  SequenceObject solid{.name = "a b c ",
+                       .triangles = {{0, 1, 2}},
+                       .texcoords = {},
+                       .points = 3,
+                       .moves = false,
+                       .is_cloth = false,
+                       .stem = {}};
   return {cloth, solid};
 }
 
@@ -31,14 +41,20 @@ std::vector<ObjectFrame> frame_at(int number) {
 
 std::set<std::string> files_in(const fs::path& folder) {
   std::set<std::string> names;
-  for (const auto& entry : fs::directory_iterator(folder)) names.insert(entry.path().filename().string());
+  for (const auto& entry : fs::directory_iterator(folder))
+    names.insert(entry.path().filename().string());
   return names;
 }
 
-std::unique_ptr<SequenceWriter> writer_into(const fs::path& folder, const std::string& format, int first = 0, int frames = 3) {
-  return make_sequence_writer(
-      sequence_format(format),
-      {.folder = folder, .title = "Two \"objects\"\n", .first_frame = first, .frames = frames, .frame_interval = 0.5}, two_objects());
+std::unique_ptr<SequenceWriter> writer_into(const fs::path& folder, const std::string& format,
+                                            int first = 0, int frames = 3) {
+  return make_sequence_writer(sequence_format(format),
+                              {.folder = folder,
+                               .title = "Two \"objects\"\n",
+                               .first_frame = first,
+                               .frames = frames,
+                               .frame_interval = 0.5},
+                              two_objects());
 }
 
 void write_frames(SequenceWriter& writer, int first = 0) {
@@ -51,7 +67,9 @@ TEST(SequenceWriter, EveryFormatMakesItsFilesAndNothingElse) {
       {"gltf", {"sequence.glb"}},
       {"obj", {"a_b__c__000004.obj", "a_b__c__000005.obj", "a_b__c__000006.obj", "a_b_c_.obj"}},
       {"ply", {"a_b__c__000004.ply", "a_b__c__000005.ply", "a_b__c__000006.ply", "a_b_c_.ply"}},
-      {"vtk", {"a_b__c__000004.vtp", "a_b__c__000005.vtp", "a_b__c__000006.vtp", "a_b_c_.vtp", "sequence.pvd"}},
+      {"vtk",
+       {"a_b__c__000004.vtp", "a_b__c__000005.vtp", "a_b__c__000006.vtp", "a_b_c_.vtp",
+        "sequence.pvd"}},
       {"pc2", {"a_b__c_.obj", "a_b__c_.pc2", "a_b_c_.obj"}},
       {"mdd", {"a_b__c_.obj", "a_b__c_.mdd", "a_b_c_.obj"}}};
   EXPECT_EQ(expected.size(), sequence_formats().size());
@@ -75,7 +93,8 @@ TEST(SequenceWriter, BeforeFinishNoHalfFileIsSeen) {
     if (!fs::exists(folder / "out")) continue;
     for (const std::string& name : files_in(folder / "out")) {
       const std::string extension = fs::path(name).extension().string();
-      EXPECT_TRUE(extension == ".obj" || extension == ".ply" || extension == ".vtp") << format.name << " left " << name;
+      EXPECT_TRUE(extension == ".obj" || extension == ".ply" || extension == ".vtp")
+          << format.name << " left " << name;
     }
   }
 }
@@ -85,11 +104,16 @@ TEST(SequenceWriter, NamesThatBecomeAlikeAreNumbered) {
   std::vector<SequenceObject> objects = two_objects();
   objects[0].name = "1 ä";
   objects[1].name = "1*:";
-  const auto writer = make_sequence_writer(sequence_format("obj"), {.folder = folder / "out", .title = {}}, objects);
+  const auto writer = make_sequence_writer(sequence_format("obj"),
+                                           {.folder = folder / "out", .title = {}}, objects);
   EXPECT_EQ(writer->objects()[0].stem, "_1___");
   EXPECT_EQ(writer->objects()[1].stem, "_1__");
   objects[1].name = objects[0].name;
-  EXPECT_EQ(make_sequence_writer(sequence_format("obj"), {.folder = folder / "out", .title = {}}, objects)->objects()[1].stem, "_1____2");
+  EXPECT_EQ(
+      make_sequence_writer(sequence_format("obj"), {.folder = folder / "out", .title = {}}, objects)
+          ->objects()[1]
+          .stem,
+      "_1____2");
 }
 
 TEST(SequenceWriter, MeshFilesReadBack) {
@@ -99,7 +123,8 @@ TEST(SequenceWriter, MeshFilesReadBack) {
     write_frames(*writer);
     writer->finish();
   }
-  const TriangleMesh obj = read_obj(folder / "out/a_b__c__000002.obj"), ply = read_ply(folder / "out/a_b__c__000002.ply");
+  const TriangleMesh obj = read_obj(folder / "out/a_b__c__000002.obj"),
+                     ply = read_ply(folder / "out/a_b__c__000002.ply");
   EXPECT_EQ(obj.positions[1], Vec3(1, 0.3, 0));  // the shortest decimal of the float
   EXPECT_EQ(obj.texcoords, two_objects()[0].texcoords);
   EXPECT_EQ(ply.positions[0], Vec3(0.2F, 0, 0));
@@ -129,7 +154,8 @@ TEST(SequenceWriter, AGltfFileThatNoProgramOpensIsRefusedBeforeItIsWritten) {
     FAIL() << "no InputError";
   } catch (const InputError& error) {
     const std::string message = error.what();
-    for (const char* part : {"sequence.glb: would have 57", " MiB for 500 frames", "--frames FIRST:LAST:STEP", "usd"})
+    for (const char* part :
+         {"sequence.glb: would have 57", " MiB for 500 frames", "--frames FIRST:LAST:STEP", "usd"})
       EXPECT_NE(message.find(part), std::string::npos) << message;
   }
   EXPECT_FALSE(fs::exists(folder / "out"));
@@ -145,7 +171,8 @@ TEST(SequenceWriter, WhatCannotBeWrittenIsSaid) {
       writer->finish();
       ADD_FAILURE() << format.name;
     } catch (const InputError& error) {
-      EXPECT_NE(std::string(error.what()).find("cannot be written: "), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find("cannot be written: "), std::string::npos)
+          << error.what();
     }
   }
 }
@@ -155,7 +182,9 @@ TEST(SequenceWriter, AnUnknownFormatIsRefusedWithThoseThereAre) {
     sequence_format("abc");
     FAIL() << "no InputError";
   } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("usd, obj, ply, pc2, mdd, vtk, gltf"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("usd, obj, ply, pc2, mdd, vtk, gltf"),
+              std::string::npos)
+        << error.what();
   }
 }
 

@@ -16,7 +16,8 @@ class TemporaryFolder {
  public:
   TemporaryFolder() {
     static std::atomic<int> made{0};
-    path_ = std::filesystem::temp_directory_path() / ("taut_io_" + std::to_string(::getpid()) + "_" + std::to_string(made++));
+    path_ = std::filesystem::temp_directory_path() /
+            ("taut_io_" + std::to_string(::getpid()) + "_" + std::to_string(made++));
     std::filesystem::create_directories(path_);
   }
   ~TemporaryFolder() {
@@ -32,7 +33,8 @@ class TemporaryFolder {
     return path_ / name;
   }
   std::size_t entries() const {
-    return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(path_), std::filesystem::directory_iterator{}));
+    return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(path_),
+                                                  std::filesystem::directory_iterator{}));
   }
 
  private:

@@ -1,5 +1,5 @@
-// USD meshes, made by OpenUSD itself (PyPI's usd-core, which ./taut test fetches into build/test-python; without it those tests are
-// skipped).
+// USD meshes, made by OpenUSD itself (PyPI's usd-core, which ./taut test fetches into
+// build/test-python; without it those tests are skipped).
 
 #include "taut/io/usd.h"
 
@@ -54,14 +54,18 @@ class Usd : public testing::Test {
   // Runs lines of Python that make `stage` a file of this name.
   fs::path made(const std::string& name, const std::string& lines) {
     const std::string script =
-        "import sys\nfrom pxr import Gf, Sdf, Usd, UsdGeom, Vt\nstage = Usd.Stage.CreateNew(sys.argv[1])\n" + lines + "\nstage.Save()\n";
-    const ChildEnd end = run_child({python_.string(), "-c", script, (folder_ / name).string()}, std::chrono::seconds(60));
+        "import sys\nfrom pxr import Gf, Sdf, Usd, UsdGeom, Vt\nstage = "
+        "Usd.Stage.CreateNew(sys.argv[1])\n" +
+        lines + "\nstage.Save()\n";
+    const ChildEnd end = run_child({python_.string(), "-c", script, (folder_ / name).string()},
+                                   std::chrono::seconds(60));
     EXPECT_EQ(end.code, 0) << end.errors;
     return folder_ / name;
   }
 
   void SetUp() override {
-    if (!fs::exists(python_)) GTEST_SKIP() << "no build/test-python; ./taut test fetches it (tools/requirements-test.txt)";
+    if (!fs::exists(python_))
+      GTEST_SKIP() << "no build/test-python; ./taut test fetches it (tools/requirements-test.txt)";
     chosen_.emplace(python_);
   }
 
@@ -80,7 +84,9 @@ def house(path):
     return mesh
 )";
 
-void expect_near(const Vec3& value, const Vec3& expected) { EXPECT_LT((value - expected).norm(), 1e-6) << value.transpose(); }
+void expect_near(const Vec3& value, const Vec3& expected) {
+  EXPECT_LT((value - expected).norm(), 1e-6) << value.transpose();
+}
 
 TEST_F(Usd, UnitsAxesAndTransformsAreApplied) {
   const TriangleMesh mesh = read_mesh(made("house.usdc", house + R"(
@@ -93,7 +99,8 @@ mesh = house("/World/House")
 mesh.AddScaleOp().Set((2, 2, 2))
 )"));
   ASSERT_EQ(mesh.positions.size(), 5u);
-  // (x, y, z) cm -> twice, turned about y ((x, y, z) becomes (z, y, -x)), moved, in metres, y up to z up.
+  // (x, y, z) cm -> twice, turned about y ((x, y, z) becomes (z, y, -x)), moved, in metres, y up to
+  // z up.
   expect_near(mesh.positions[0], Vec3(0, -2, 0));
   expect_near(mesh.positions[1], Vec3(0, 0, 0));
   expect_near(mesh.positions[4], Vec3(0.2, -1, 3));
@@ -104,7 +111,8 @@ mesh.AddScaleOp().Set((2, 2, 2))
 TEST_F(Usd, TextureCoordinatesOfVerticesAndOfCorners) {
   const std::string stage =
       house +
-      "UsdGeom.SetStageMetersPerUnit(stage, 1)\nUsdGeom.SetStageUpAxis(stage, UsdGeom.Tokens.z)\nmesh = house(\"/House\")\n"
+      "UsdGeom.SetStageMetersPerUnit(stage, 1)\nUsdGeom.SetStageUpAxis(stage, "
+      "UsdGeom.Tokens.z)\nmesh = house(\"/House\")\n"
       "api = UsdGeom.PrimvarsAPI(mesh)\n";
   const TriangleMesh by_vertex = read_usd(made("vertex.usda", stage + R"(
 api.CreatePrimvar("st", Sdf.ValueTypeNames.TexCoord2fArray, "vertex").Set([(0, 0), (1, 0), (1, 0.5), (0, 0.5), (0.5, 1)])
@@ -126,7 +134,8 @@ TEST_F(Usd, LeftHandedAndMirroredMeshesAreTurnedOnce) {
     const TriangleMesh mesh = read_usd(made(name, stage + lines));
     Vec3 sum = Vec3::Zero();
     for (const Triangle& t : mesh.triangles)
-      sum += (mesh.positions[t[1]] - mesh.positions[t[0]]).cross(mesh.positions[t[2]] - mesh.positions[t[0]]);
+      sum += (mesh.positions[t[1]] - mesh.positions[t[0]])
+                 .cross(mesh.positions[t[2]] - mesh.positions[t[0]]);
     return sum;
   };
   // Without metersPerUnit and upAxis USD means centimetres, Y up: the front, +z there, is -y here.
@@ -135,7 +144,11 @@ TEST_F(Usd, LeftHandedAndMirroredMeshesAreTurnedOnce) {
   EXPECT_GT(area("left.usda", "mesh.CreateOrientationAttr(UsdGeom.Tokens.leftHanded)").y(), 1.9);
   // Mirrored in z, what showed its front to +z shows it to -z, which is +y here.
   EXPECT_GT(area("mirror.usda", "mesh.AddScaleOp().Set((1, 1, -1))").y(), 1.9);
-  EXPECT_LT(area("both.usda", "mesh.CreateOrientationAttr(UsdGeom.Tokens.leftHanded)\nmesh.AddScaleOp().Set((1, 1, -1))").y(), -1.9);
+  EXPECT_LT(area("both.usda",
+                 "mesh.CreateOrientationAttr(UsdGeom.Tokens.leftHanded)\nmesh.AddScaleOp().Set((1, "
+                 "1, -1))")
+                .y(),
+            -1.9);
 }
 
 TEST_F(Usd, OfSeveralMeshesOneIsChosen) {
@@ -155,7 +168,8 @@ UsdGeom.Sphere.Define(stage, "/World/Ball")
   EXPECT_DOUBLE_EQ(read_mesh(file, "/World/Body").positions[1].x(), 2.0);
   EXPECT_NE(refusal(file, "/World/Many").find("holds 2 meshes"), std::string::npos);
   EXPECT_NE(refusal(file, "/World/Ball").find("holds 0 meshes"), std::string::npos);
-  EXPECT_NE(refusal(file, "/Nowhere").find("has no prim /Nowhere; its meshes are: /World/Shirt"), std::string::npos)
+  EXPECT_NE(refusal(file, "/Nowhere").find("has no prim /Nowhere; its meshes are: /World/Shirt"),
+            std::string::npos)
       << refusal(file, "/Nowhere");
   EXPECT_NE(refusal(file, "not a path"), "not refused");
 }
@@ -172,10 +186,12 @@ TEST_F(Usd, BadFilesAreNamed) {
   refuses(folder_ / "bytes.usdc", "cannot be opened as USD");
   refuses(folder_ / "absent.usd", "is not there");
   refuses(made("empty.usda", ""), "holds no mesh");
-  refuses(made("faces.usda", house + "house(\"/House\").GetFaceVertexIndicesAttr().Set([0, 1, 2, 3, 3, 2, 5])"), "do not fit its 5 points");
-  refuses(
-      made("nan.usda", house + "house(\"/House\").GetPointsAttr().Set([(0, 0, 0), (float('nan'), 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1)])"),
-      "not finite");
+  refuses(made("faces.usda",
+               house + "house(\"/House\").GetFaceVertexIndicesAttr().Set([0, 1, 2, 3, 3, 2, 5])"),
+          "do not fit its 5 points");
+  refuses(made("nan.usda", house + "house(\"/House\").GetPointsAttr().Set([(0, 0, 0), "
+                                   "(float('nan'), 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1)])"),
+          "not finite");
 }
 
 // What is said without Python or without pxr, anywhere.
@@ -193,7 +209,8 @@ TEST(UsdWithoutPxr, SaysWhatToDo) {
   const ChosenPython bare(folder / "python");
   const std::string text = refusal(folder / "mesh.usd");
   EXPECT_TRUE(text.starts_with((folder / "mesh.usd").string() + ": ")) << text;
-  EXPECT_NE(text.find("has no module pxr that works (libusd is broken)"), std::string::npos) << text;
+  EXPECT_NE(text.find("has no module pxr that works (libusd is broken)"), std::string::npos)
+      << text;
   EXPECT_NE(text.find("OBJ or PLY"), std::string::npos) << text;
 }
 

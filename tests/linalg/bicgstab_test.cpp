@@ -30,13 +30,16 @@ TEST(Bicgstab, SolvesNonsymmetricSystems) {
     DiagonalPreconditioner m;
     ASSERT_TRUE(m.update(a).ok());
     int calls = 0;
-    KrylovOptions options{1e-11, 1000, [&](int iteration, double, std::span<const double>) { EXPECT_EQ(iteration, ++calls); }};
+    KrylovOptions options{1e-11, 1000, [&](int iteration, double, std::span<const double>) {
+                            EXPECT_EQ(iteration, ++calls);
+                          }};
     const KrylovResult result = bicgstab(BlockCsrOperator(a), m, b, x, options);
     EXPECT_TRUE(result.status.ok()) << result.status.message;
     EXPECT_EQ(calls, result.iterations);
     EXPECT_LE(result.stop_value, 1e-11);
     // What is reported is the true residual.
-    EXPECT_NEAR(result.stop_value, (as_eigen(b) - dense(a) * as_eigen(x)).norm() / as_eigen(b).norm(), 1e-14);
+    EXPECT_NEAR(result.stop_value,
+                (as_eigen(b) - dense(a) * as_eigen(x)).norm() / as_eigen(b).norm(), 1e-14);
     EXPECT_LT(relative_difference(x, dense(a).partialPivLu().solve(as_eigen(b))), 1e-9);
   }
 }
@@ -66,7 +69,9 @@ TEST(Bicgstab, ReportsTheLimit) {
 
 struct Identity : Preconditioner {
   Status update(const BlockCsr&) override { return {}; }
-  void apply(std::span<const double> r, std::span<double> z) const override { std::copy(r.begin(), r.end(), z.begin()); }
+  void apply(std::span<const double> r, std::span<double> z) const override {
+    std::copy(r.begin(), r.end(), z.begin());
+  }
 };
 
 // For a skew matrix rᵀA r = 0 whatever r: the method cannot take a single step.

@@ -57,25 +57,35 @@ struct BasisCase {
 };
 
 BasisCase random_case(Random& random, Index nodes) {
-  BasisCase c{random_spd(random, make_pattern(random_graph(random, nodes, 4, 30), 3), 1e-2), {}, random_basis(random, nodes)};
+  BasisCase c{random_spd(random, make_pattern(random_graph(random, nodes, 4, 30), 3), 1e-2),
+              {},
+              random_basis(random, nodes)};
   const BlockPattern& p = *c.a.pattern;
   for (Index i = 0; i < nodes; ++i)
-    for (Index k = p.row_start[i]; k < p.row_start[i + 1]; ++k) c.mask.push_back((i + p.column[k]) % 3 != 0);
+    for (Index k = p.row_start[i]; k < p.row_start[i + 1]; ++k)
+      c.mask.push_back((i + p.column[k]) % 3 != 0);
   return c;
 }
 
 class BlockFactorBasis : public testing::TestWithParam<CholeskyPrecision> {
  protected:
-  double tolerance() const { return GetParam() == CholeskyPrecision::double_precision ? 1e-11 : 3e-5; }
+  double tolerance() const {
+    return GetParam() == CholeskyPrecision::double_precision ? 1e-11 : 3e-5;
+  }
   BlockCholesky cholesky_{GetParam()};
 };
 
 INSTANTIATE_TEST_SUITE_P(Precisions, BlockFactorBasis,
-                         testing::Values(CholeskyPrecision::double_precision, CholeskyPrecision::single_precision),
-                         [](const auto& p) { return p.param == CholeskyPrecision::double_precision ? "double" : "single"; });
+                         testing::Values(CholeskyPrecision::double_precision,
+                                         CholeskyPrecision::single_precision),
+                         [](const auto& p) {
+                           return p.param == CholeskyPrecision::double_precision ? "double"
+                                                                                 : "single";
+                         });
 
 // `size`: of b, to see that single precision does not run out of range.
-void expect_solves(BlockCholesky& cholesky, const BasisCase& c, Random& random, double tolerance, double size) {
+void expect_solves(BlockCholesky& cholesky, const BasisCase& c, Random& random, double tolerance,
+                   double size) {
   std::vector<double> b = random.vector(c.a.dofs());
   for (double& value : b) value *= size;
   double norm2 = -1.0;
@@ -88,7 +98,8 @@ void expect_solves(BlockCholesky& cholesky, const BasisCase& c, Random& random, 
   std::vector<double> x(b.size(), std::numeric_limits<double>::quiet_NaN());
   cholesky.solve_backward(0.0, x);
   EXPECT_LT(relative_difference(x, q * reduced), tolerance);
-  // Whatever the precision of the factor, nothing comes out in directions that are not the basis's: conjugate gradients would amplify it.
+  // Whatever the precision of the factor, nothing comes out in directions that are not the basis's:
+  // conjugate gradients would amplify it.
   EXPECT_LT((as_eigen(x) - q * (q.transpose() * as_eigen(x))).norm(), 1e-14 * as_eigen(x).norm());
 
   // Again, apart from the factorisation, and added to what was there.
@@ -116,7 +127,8 @@ TEST_P(BlockFactorBasis, SolvesThePartInTheBasis) {
 TEST_P(BlockFactorBasis, CondensesNodesInTheBasis) {
   Random random(8);
   for (const Index nodes : {2, 9, 40, 140}) {
-    BasisCase c{random_spd(random, make_pattern(random_graph(random, nodes, 1, 15), 3), 1e-2), {}, {}};
+    BasisCase c{
+        random_spd(random, make_pattern(random_graph(random, nodes, 1, 15), 3), 1e-2), {}, {}};
     c.mask.assign(static_cast<std::size_t>(c.a.pattern->blocks()), 1);
     ASSERT_TRUE(cholesky_.analyze(c.a.pattern, c.mask).ok());
     ASSERT_GT(cholesky_.block_statistics().condensed, 0);
@@ -141,7 +153,8 @@ TEST_P(BlockFactorBasis, TakesInWhatHasAPlace) {
     EXPECT_EQ(with.panel_bytes, without.panel_bytes);
     EXPECT_EQ(with.padded_flops, without.padded_flops);
 
-    const std::vector<std::uint8_t> blocks(cholesky_.analyzed_blocks().begin(), cholesky_.analyzed_blocks().end());
+    const std::vector<std::uint8_t> blocks(cholesky_.analyzed_blocks().begin(),
+                                           cholesky_.analyzed_blocks().end());
     ASSERT_EQ(blocks.size(), c.mask.size());
     for (std::size_t k = 0; k < blocks.size(); ++k) {
       EXPECT_GE(blocks[k], c.mask[k]);
@@ -154,7 +167,8 @@ TEST_P(BlockFactorBasis, TakesInWhatHasAPlace) {
   EXPECT_GT(left, 20);
 }
 
-// Springs outside the mask, lumped: what is factorised is the matrix of the others, with constraints and without, however many threads.
+// Springs outside the mask, lumped: what is factorised is the matrix of the others, with
+// constraints and without, however many threads.
 TEST_P(BlockFactorBasis, WithoutTheSpringsOutside) {
   Random random(5);
   for (const Index nodes : {2, 40, 400}) {
@@ -164,7 +178,8 @@ TEST_P(BlockFactorBasis, WithoutTheSpringsOutside) {
     for (BlockCsr* a : {&c.a, &inside}) std::ranges::fill(a->values, 0.0);
     const auto add = [&](BlockCsr& a, Index i, Index j, const Mat3& block) {
       for (Index r = 0; r < 3; ++r)
-        for (Index column = 0; column < 3; ++column) a.block(i, p.find(i, j))[r * p.width(i) + column] += block(r, column);
+        for (Index column = 0; column < 3; ++column)
+          a.block(i, p.find(i, j))[r * p.width(i) + column] += block(r, column);
     };
     for (Index i = 0; i < nodes; ++i) {
       for (BlockCsr* a : {&c.a, &inside}) add(*a, i, i, Mat3::Identity());
@@ -176,21 +191,25 @@ TEST_P(BlockFactorBasis, WithoutTheSpringsOutside) {
         const Mat3 spring = 10.0 * e * e.transpose();
         for (BlockCsr* a : {&c.a, &inside}) {
           if (a == &inside && !c.mask[k]) continue;
-          add(*a, i, i, spring), add(*a, j, j, spring), add(*a, i, j, -spring), add(*a, j, i, -spring);
+          add(*a, i, i, spring), add(*a, j, j, spring), add(*a, i, j, -spring),
+              add(*a, j, i, -spring);
         }
       }
     }
     ASSERT_TRUE(cholesky_.analyze(c.a.pattern, c.mask).ok());
     const std::vector<double> b = random.vector(c.a.dofs());
     for (const bool held : {false, true}) {
-      const Eigen::MatrixXd q = held ? c.basis.dense() : Eigen::MatrixXd::Identity(3 * nodes, 3 * nodes);
-      const Eigen::VectorXd expected = q * (q.transpose() * dense(inside) * q).llt().solve(q.transpose() * as_eigen(b));
+      const Eigen::MatrixXd q =
+          held ? c.basis.dense() : Eigen::MatrixXd::Identity(3 * nodes, 3 * nodes);
+      const Eigen::VectorXd expected =
+          q * (q.transpose() * dense(inside) * q).llt().solve(q.transpose() * as_eigen(b));
       std::vector<int> seen(static_cast<std::size_t>(nodes), 0);
       const BlocksOutside outside{true, false, [&](Index begin, Index end) {
                                     for (Index i = begin; i < end; ++i) ++seen[i];
                                   }};
       std::vector<double> x(b.size());
-      ASSERT_TRUE(cholesky_.factorize(c.a, held ? c.basis.view() : NodeBasis{}, b, nullptr, outside).ok());
+      ASSERT_TRUE(
+          cholesky_.factorize(c.a, held ? c.basis.view() : NodeBasis{}, b, nullptr, outside).ok());
       cholesky_.solve_backward(0.0, x);
       EXPECT_LT(relative_difference(x, expected), tolerance()) << nodes << (held ? ", held" : "");
       EXPECT_EQ(std::ranges::count(seen, 1), nodes) << "each row is to be seen once";
@@ -211,13 +230,20 @@ TEST_P(BlockFactorBasis, WithParallelogramsForSpringsOutside) {
     const std::vector<double> b = random.vector(grid.a.dofs());
     for (const bool held : {false, true})
       for (const bool replaced : {true, false, true}) {
-        const Eigen::MatrixXd q = held ? basis.dense() : Eigen::MatrixXd::Identity(3 * nodes, 3 * nodes);
-        const Eigen::MatrixXd p = dense_core(grid.a, cholesky_.analyzed_blocks(), replaced ? list : std::span<const Parallelogram>());
-        const Eigen::VectorXd expected = q * (q.transpose() * p * q).llt().solve(q.transpose() * as_eigen(b));
+        const Eigen::MatrixXd q =
+            held ? basis.dense() : Eigen::MatrixXd::Identity(3 * nodes, 3 * nodes);
+        const Eigen::MatrixXd p = dense_core(grid.a, cholesky_.analyzed_blocks(),
+                                             replaced ? list : std::span<const Parallelogram>());
+        const Eigen::VectorXd expected =
+            q * (q.transpose() * p * q).llt().solve(q.transpose() * as_eigen(b));
         std::vector<double> x(b.size());
-        ASSERT_TRUE(cholesky_.factorize(grid.a, held ? basis.view() : NodeBasis{}, b, nullptr, {true, replaced, {}}).ok());
+        ASSERT_TRUE(cholesky_
+                        .factorize(grid.a, held ? basis.view() : NodeBasis{}, b, nullptr,
+                                   {true, replaced, {}})
+                        .ok());
         cholesky_.solve_backward(0.0, x);
-        EXPECT_LT(relative_difference(x, expected), tolerance()) << nodes << (held ? ", held" : "") << (replaced ? ", replaced" : "");
+        EXPECT_LT(relative_difference(x, expected), tolerance())
+            << nodes << (held ? ", held" : "") << (replaced ? ", replaced" : "");
       }
   }
 }
@@ -242,7 +268,8 @@ TEST_P(BlockFactorBasis, ParallelogramsGiveTheSameBitsForAnyNumberOfThreads) {
 
 TEST_P(BlockFactorBasis, WithoutBasisAndMask) {
   Random random(2);
-  const BlockCsr a = random_spd(random, make_pattern(random_graph(random, 50, 3, 20), random_dims(random, 50)), 1e-2);
+  const BlockCsr a = random_spd(
+      random, make_pattern(random_graph(random, 50, 3, 20), random_dims(random, 50)), 1e-2);
   ASSERT_TRUE(cholesky_.analyze(a.pattern, {}).ok());
   const std::vector<double> b = random.vector(a.dofs());
   std::vector<double> x(b.size());

@@ -1,4 +1,5 @@
-// After the first factorisation and solve there is nothing left to allocate: counted by this test program's own operator new.
+// After the first factorisation and solve there is nothing left to allocate: counted by this test
+// program's own operator new.
 
 #include <gtest/gtest.h>
 
@@ -42,9 +43,11 @@ TEST(BlockFactorMemory, RefactorisingAllocatesNothing) {
   const BlockCsr a = random_spd(random, make_pattern(random_graph(random, 300, 4, 100), 3), 1e-2);
   const std::vector<double> b = random.vector(a.dofs());
   std::vector<double> x(b.size());
-  for (const auto precision : {CholeskyPrecision::double_precision, CholeskyPrecision::single_precision}) {
+  for (const auto precision :
+       {CholeskyPrecision::double_precision, CholeskyPrecision::single_precision}) {
     BlockCholesky cholesky(precision);
-    ASSERT_TRUE(cholesky.analyze(a).ok() && cholesky.factorize(a).ok() && cholesky.solve(b, x).ok());
+    ASSERT_TRUE(cholesky.analyze(a).ok() && cholesky.factorize(a).ok() &&
+                cholesky.solve(b, x).ok());
     const long at_start = allocations;
     bool ok = true;
     for (int k = 0; k < 3; ++k) ok = ok && cholesky.factorize(a).ok() && cholesky.solve(b, x).ok();

@@ -1,4 +1,5 @@
-// Taut's own factorisation beyond what every backend must do (sparse_cholesky_test.cpp): against dense matrices.
+// Taut's own factorisation beyond what every backend must do (sparse_cholesky_test.cpp): against
+// dense matrices.
 
 #include "taut/linalg/block_cholesky.h"
 
@@ -17,7 +18,9 @@ namespace {
 
 class BlockFactor : public testing::TestWithParam<CholeskyPrecision> {
  protected:
-  double tolerance() const { return GetParam() == CholeskyPrecision::double_precision ? 1e-11 : 3e-5; }
+  double tolerance() const {
+    return GetParam() == CholeskyPrecision::double_precision ? 1e-11 : 3e-5;
+  }
 
   void expect_solves(const BlockCsr& a) {
     ASSERT_TRUE(cholesky_.analyze(a).ok());
@@ -38,16 +41,25 @@ class BlockFactor : public testing::TestWithParam<CholeskyPrecision> {
   BlockCholesky cholesky_{GetParam()};
 };
 
-INSTANTIATE_TEST_SUITE_P(Precisions, BlockFactor, testing::Values(CholeskyPrecision::double_precision, CholeskyPrecision::single_precision),
-                         [](const auto& p) { return p.param == CholeskyPrecision::double_precision ? "double" : "single"; });
+INSTANTIATE_TEST_SUITE_P(Precisions, BlockFactor,
+                         testing::Values(CholeskyPrecision::double_precision,
+                                         CholeskyPrecision::single_precision),
+                         [](const auto& p) {
+                           return p.param == CholeskyPrecision::double_precision ? "double"
+                                                                                 : "single";
+                         });
 
 TEST_P(BlockFactor, MixedDims) {
   for (const Index nodes : {1, 2, 7, 40, 150})
     for (int trial = 0; trial < 3; ++trial)
-      expect_solves(random_spd(random_, make_pattern(random_graph(random_, nodes, 3, 40), random_dims(random_, nodes)), 1e-2));
+      expect_solves(random_spd(
+          random_, make_pattern(random_graph(random_, nodes, 3, 40), random_dims(random_, nodes)),
+          1e-2));
 }
 
-TEST_P(BlockFactor, ScalarBlocks) { expect_solves(random_spd(random_, make_pattern(random_graph(random_, 400, 3, 200), 1), 1e-2)); }
+TEST_P(BlockFactor, ScalarBlocks) {
+  expect_solves(random_spd(random_, make_pattern(random_graph(random_, 400, 3, 200), 1), 1e-2));
+}
 
 TEST_P(BlockFactor, DenseMatrix) {
   std::vector<std::vector<Index>> all(60);
@@ -57,14 +69,16 @@ TEST_P(BlockFactor, DenseMatrix) {
 }
 
 TEST_P(BlockFactor, DiagonalMatrix) {
-  expect_solves(random_spd(random_, make_pattern(std::vector<std::vector<Index>>(30), random_dims(random_, 30))));
+  expect_solves(random_spd(
+      random_, make_pattern(std::vector<std::vector<Index>>(30), random_dims(random_, 30))));
 }
 
 TEST_P(BlockFactor, SeveralComponents) {
   std::vector<std::vector<Index>> columns;
   for (const Index size : {1, 30, 2, 0, 75, 1}) {
     const Index first = static_cast<Index>(columns.size());
-    for (auto row : size > 0 ? random_graph(random_, size, 3, 20) : std::vector<std::vector<Index>>{}) {
+    for (auto row :
+         size > 0 ? random_graph(random_, size, 3, 20) : std::vector<std::vector<Index>>{}) {
       for (Index& j : row) j += first;
       columns.push_back(std::move(row));
     }
@@ -72,7 +86,8 @@ TEST_P(BlockFactor, SeveralComponents) {
   expect_solves(random_spd(random_, make_pattern(columns, 3), 1e-2));
 }
 
-// The analysis of the full pattern serves matrices with fewer unknowns at some nodes, and with blocks missing.
+// The analysis of the full pattern serves matrices with fewer unknowns at some nodes, and with
+// blocks missing.
 TEST_P(BlockFactor, AnalysisSurvivesFewerUnknowns) {
   const auto graph = random_graph(random_, 120, 3, 30);
   const BlockCsr full = random_spd(random_, make_pattern(graph, 3), 1e-2);
@@ -83,7 +98,8 @@ TEST_P(BlockFactor, AnalysisSurvivesFewerUnknowns) {
       std::erase(fewer[i], static_cast<Index>(i + 1));
       std::erase(fewer[i + 1], static_cast<Index>(i));
     }
-    expect_refactorises(random_spd(random_, make_pattern(trial % 2 ? fewer : graph, random_dims(random_, 120)), 1e-2));
+    expect_refactorises(random_spd(
+        random_, make_pattern(trial % 2 ? fewer : graph, random_dims(random_, 120)), 1e-2));
   }
   expect_refactorises(full);
 }
@@ -93,8 +109,9 @@ TEST_P(BlockFactor, RefusesWhatWasNotAnalysed) {
   ASSERT_TRUE(cholesky_.analyze(random_spd(random_, make_pattern(graph, 2))).ok());
   auto linked = graph;
   linked[0].push_back(19), linked[19].push_back(0);
-  for (const BlockCsr& a : {random_spd(random_, make_pattern(linked, 2)), random_spd(random_, make_pattern(graph, 3)),
-                            random_spd(random_, make_pattern(random_graph(random_, 21, 1, 4), 2))}) {
+  for (const BlockCsr& a :
+       {random_spd(random_, make_pattern(linked, 2)), random_spd(random_, make_pattern(graph, 3)),
+        random_spd(random_, make_pattern(random_graph(random_, 21, 1, 4), 2))}) {
     const Status status = cholesky_.factorize(a);
     EXPECT_EQ(status.outcome, Outcome::breakdown);
     EXPECT_FALSE(status.message.empty());
@@ -118,8 +135,9 @@ BlockCsr beyond_float(Random& random) {
   return a;
 }
 
-// A matrix so small that what is subtracted from it is subnormal in single precision: taken for zero on every thread, whatever the caller's
-// thread does with such numbers, and the caller's way is as it was.
+// A matrix so small that what is subtracted from it is subnormal in single precision: taken for
+// zero on every thread, whatever the caller's thread does with such numbers, and the caller's way
+// is as it was.
 TEST(BlockFactorSubnormals, AreZeroOnEveryThread) {
   Random random(8);
   SpringGrid grid(random, 40, 40, 0.3);

@@ -48,15 +48,18 @@ TEST(BlockProduct, MixedBlocksAgainstDense) {
   }
 }
 
-// Rows longer than the product's buffer of 192 gathered entries, whose pieces end inside and between blocks.
+// Rows longer than the product's buffer of 192 gathered entries, whose pieces end inside and
+// between blocks.
 TEST(BlockProduct, FullRowsAgainstDense) {
   Random random(3);
   for (const Index nodes : {63, 64, 65, 128, 129, 200}) {
     std::vector<std::vector<Index>> columns(static_cast<std::size_t>(nodes));
     for (auto& row : columns)
       for (Index j = 0; j < nodes; ++j) row.push_back(j);
-    for (const Index dim : {1, 2, 3}) compare_with_dense(random_matrix(random, make_pattern(columns, dim)), random);
-    compare_with_dense(random_matrix(random, make_pattern(columns, random_dims(random, nodes))), random);
+    for (const Index dim : {1, 2, 3})
+      compare_with_dense(random_matrix(random, make_pattern(columns, dim)), random);
+    compare_with_dense(random_matrix(random, make_pattern(columns, random_dims(random, nodes))),
+                       random);
   }
 }
 
@@ -86,7 +89,8 @@ TEST(LowerTriangle, AgainstDense) {
   Random random(4);
   for (int trial = 0; trial < 3; ++trial) {
     const auto graph = random_graph(random, 60, 4, 30);
-    const BlockCsr a = random_spd(random, trial == 0 ? make_pattern(graph, 3) : make_pattern(graph, random_dims(random, 60)));
+    const BlockCsr a = random_spd(
+        random, trial == 0 ? make_pattern(graph, 3) : make_pattern(graph, random_dims(random, 60)));
     ScalarCsc csc;
     lower_triangle(a, csc);
     ASSERT_EQ(static_cast<Index>(csc.column_start.size()), a.dofs() + 1);

@@ -1,4 +1,5 @@
-// The same bits for any number of threads: products, sums and whole solves. Large enough that every loop is really split.
+// The same bits for any number of threads: products, sums and whole solves. Large enough that every
+// loop is really split.
 
 #include <gtest/gtest.h>
 
@@ -19,7 +20,8 @@ class Determinism : public testing::Test {
  protected:
   ~Determinism() override { set_thread_count(before_); }
 
-  // action() returns a vector of doubles, compared by bits (== would let 0 pass for -0, which is harmless, and NaN never).
+  // action() returns a vector of doubles, compared by bits (== would let 0 pass for -0, which is
+  // harmless, and NaN never).
   template <class Action>
   void expect_same_bits(Action action) {
     set_thread_count(1);
@@ -33,7 +35,9 @@ class Determinism : public testing::Test {
 
   BlockCsr narrow_spd(bool mixed) {
     const auto graph = random_graph(random_, nodes, 2, 4);
-    return random_spd(random_, mixed ? make_pattern(graph, random_dims(random_, nodes)) : make_pattern(graph, 3), 0.02);
+    return random_spd(
+        random_, mixed ? make_pattern(graph, random_dims(random_, nodes)) : make_pattern(graph, 3),
+        0.02);
   }
 
   Random random_{1};
@@ -102,7 +106,8 @@ TEST_F(Determinism, DirectSolves) {
   expect_same_bits([&] {
     std::vector<double> x(b.size());
     EigenCholesky cholesky;
-    EXPECT_TRUE(cholesky.analyze(a).ok() && cholesky.factorize(a).ok() && cholesky.solve(b, x).ok());
+    EXPECT_TRUE(cholesky.analyze(a).ok() && cholesky.factorize(a).ok() &&
+                cholesky.solve(b, x).ok());
     return x;
   });
 }
@@ -123,7 +128,8 @@ BlockCsr grid_spd(Random& random, Index side) {
 TEST_F(Determinism, BlockCholesky) {
   const BlockCsr a = grid_spd(random_, 110);
   const std::vector<double> b = random_.vector(a.dofs());
-  for (const auto precision : {CholeskyPrecision::double_precision, CholeskyPrecision::single_precision}) {
+  for (const auto precision :
+       {CholeskyPrecision::double_precision, CholeskyPrecision::single_precision}) {
     // One analysis serves all: the plan of the tasks follows the number of threads.
     taut::BlockCholesky cholesky(precision);
     ASSERT_TRUE(cholesky.analyze(a.pattern, {}).ok());

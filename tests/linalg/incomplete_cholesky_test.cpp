@@ -10,14 +10,17 @@
 namespace taut::test {
 namespace {
 
-// The block-wise Cholesky factor of M, for the second half of what defines IC(0): no blocks outside A's pattern.
+// The block-wise Cholesky factor of M, for the second half of what defines IC(0): no blocks outside
+// A's pattern.
 double fill_outside_pattern(const Eigen::MatrixXd& m, const BlockPattern& p) {
   const Eigen::MatrixXd l = m.llt().matrixL();
   double largest = 0.0;
   for (Index i = 0; i < p.rows(); ++i)
     for (Index j = 0; j < i; ++j)
       if (p.find(i, j) < 0 && p.dim(i) > 0 && p.dim(j) > 0)
-        largest = std::max(largest, l.block(p.dof_start[i], p.dof_start[j], p.dim(i), p.dim(j)).cwiseAbs().maxCoeff());
+        largest = std::max(
+            largest,
+            l.block(p.dof_start[i], p.dof_start[j], p.dim(i), p.dim(j)).cwiseAbs().maxCoeff());
   return largest;
 }
 
@@ -60,7 +63,8 @@ TEST(IncompleteCholesky, DoesNotDependOnTheAxes) {
   const BlockCsr a = random_spd(random, pattern);
   Eigen::MatrixXd rotation = Eigen::MatrixXd::Zero(a.dofs(), a.dofs());
   for (Index i = 0; i < a.rows(); ++i)
-    rotation.block<3, 3>(3 * i, 3 * i) = Eigen::AngleAxisd(random.uniform(-3.0, 3.0), random.direction()).toRotationMatrix();
+    rotation.block<3, 3>(3 * i, 3 * i) =
+        Eigen::AngleAxisd(random.uniform(-3.0, 3.0), random.direction()).toRotationMatrix();
   const Eigen::MatrixXd rotated = rotation.transpose() * dense(a) * rotation;
   BlockCsr b(pattern);
   for_each_entry(b, [&](Index row, Index column, double& value) { value = rotated(row, column); });
@@ -70,7 +74,8 @@ TEST(IncompleteCholesky, DoesNotDependOnTheAxes) {
   EXPECT_LT((dense_inverse(of_b, a.dofs()) - expected).norm(), 1e-12 * expected.norm());
 }
 
-// Kershaw 1978: positive definite, but the last pivot of its IC(0) is negative. A ring of four, as scalars and as blocks.
+// Kershaw 1978: positive definite, but the last pivot of its IC(0) is negative. A ring of four, as
+// scalars and as blocks.
 BlockCsr kershaw(Index dim) {
   BlockCsr a(make_pattern({{1, 3}, {0, 2}, {1, 3}, {0, 2}}, dim));
   for_each_entry(a, [&](Index row, Index column, double& value) {
@@ -94,7 +99,8 @@ TEST(IncompleteCholesky, FindsAShiftForKershawsMatrix) {
     };
     EXPECT_LT(last_pivot(0.0), 0.0);
     EXPECT_GT(last_pivot(ic.shift()), 0.0);
-    EXPECT_LT(last_pivot(ic.shift() / std::pow(2.0, 1.0 / 8.0) * 0.999), 0.0);  // three halvings of a factor of two
+    // three halvings of a factor of two
+    EXPECT_LT(last_pivot(ic.shift() / std::pow(2.0, 1.0 / 8.0) * 0.999), 0.0);
     EXPECT_GT(ic.factorizations(), 4);
     EXPECT_NE(ic.remark().find("node 3"), std::string::npos) << ic.remark();
 
@@ -130,7 +136,9 @@ TEST(IncompleteCholesky, RefusesWhatNoShiftMends) {
     a.block(7, a.pattern->diagonal[7])[a.pattern->width(7) + 1] = bad;
     BlockIncompleteCholesky ic;
     const Status status = ic.update(a);
-    EXPECT_EQ(status.outcome, std::isfinite(bad) ? Outcome::not_positive_definite : Outcome::not_finite) << bad;
+    EXPECT_EQ(status.outcome,
+              std::isfinite(bad) ? Outcome::not_positive_definite : Outcome::not_finite)
+        << bad;
     EXPECT_FALSE(status.message.empty());
   }
   BlockCsr a = good;

@@ -1,5 +1,6 @@
 #pragma once
-// What the tests of the incomplete factorisations share: the preconditioner as a dense matrix, and its comparison with A on A's pattern.
+// What the tests of the incomplete factorisations share: the preconditioner as a dense matrix, and
+// its comparison with A on A's pattern.
 
 #include "linalg/random_matrix.h"
 #include "taut/linalg/preconditioner.h"
@@ -11,7 +12,8 @@ inline Eigen::MatrixXd dense_inverse(const Preconditioner& m, Index n) {
   Eigen::MatrixXd inverse(n, n);
   for (Index c = 0; c < n; ++c) {
     const Eigen::VectorXd unit = Eigen::VectorXd::Unit(n, c);
-    m.apply({unit.data(), static_cast<std::size_t>(n)}, {inverse.col(c).data(), static_cast<std::size_t>(n)});
+    m.apply({unit.data(), static_cast<std::size_t>(n)},
+            {inverse.col(c).data(), static_cast<std::size_t>(n)});
   }
   return inverse;
 }
@@ -19,7 +21,9 @@ inline Eigen::MatrixXd dense_inverse(const Preconditioner& m, Index n) {
 // Largest |M - A| where A has a block.
 inline double difference_on_pattern(const Eigen::MatrixXd& m, BlockCsr a) {
   double largest = 0.0;
-  for_each_entry(a, [&](Index row, Index column, double& value) { largest = std::max(largest, std::abs(m(row, column) - value)); });
+  for_each_entry(a, [&](Index row, Index column, double& value) {
+    largest = std::max(largest, std::abs(m(row, column) - value));
+  });
   return largest;
 }
 
@@ -30,7 +34,9 @@ inline std::vector<std::vector<Index>> chain(Index nodes) {
 }
 
 // 3: all nodes of three unknowns, 1: of one, 0: mixed.
-inline std::shared_ptr<const BlockPattern> pattern_of(Random& random, std::vector<std::vector<Index>> graph, Index dim) {
+inline std::shared_ptr<const BlockPattern> pattern_of(Random& random,
+                                                      std::vector<std::vector<Index>> graph,
+                                                      Index dim) {
   if (dim > 0) return make_pattern(std::move(graph), dim);
   const auto dims = random_dims(random, static_cast<Index>(graph.size()));
   return make_pattern(std::move(graph), dims);

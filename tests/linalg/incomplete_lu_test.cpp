@@ -35,8 +35,10 @@ TEST(IncompleteLu, IsAOnItsPattern) {
   Random random(1);
   for (const bool one_way : {false, true})
     for (const Index dim : {3, 1, 0, 0}) {
-      const BlockCsr a =
-          random_nonsymmetric(random, pattern_of(random, one_way ? one_way_graph(random, 50) : random_graph(random, 50, 3, 15), dim));
+      const BlockCsr a = random_nonsymmetric(
+          random,
+          pattern_of(random, one_way ? one_way_graph(random, 50) : random_graph(random, 50, 3, 15),
+                     dim));
       BlockIncompleteLu ilu;
       ASSERT_TRUE(ilu.update(a).ok());
       const Eigen::MatrixXd m = dense_inverse(ilu, a.dofs()).inverse();
@@ -66,7 +68,8 @@ TEST(IncompleteLu, OfASymmetricMatrixIsItsIncompleteCholesky) {
   BlockIncompleteLu ilu;
   BlockIncompleteCholesky ic;
   ASSERT_TRUE(ilu.update(a).ok() && ic.update(a).ok());
-  EXPECT_LT((dense_inverse(ilu, a.dofs()) - dense_inverse(ic, a.dofs())).norm(), 1e-10 * dense_inverse(ic, a.dofs()).norm());
+  EXPECT_LT((dense_inverse(ilu, a.dofs()) - dense_inverse(ic, a.dofs())).norm(),
+            1e-10 * dense_inverse(ic, a.dofs()).norm());
 }
 
 TEST(IncompleteLu, ReportsSingularAndNonFinitePivots) {

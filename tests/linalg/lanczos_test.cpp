@@ -16,11 +16,13 @@ BlockCsr mixed_spd(Random& random, double margin) {
   return random_spd(random, make_pattern(random_graph(random, 60, 3, 20), dims), margin);
 }
 
-CgCoefficients run(const BlockCsr& a, const Preconditioner& m, Random& random, double tolerance, int max_iterations = 1000) {
+CgCoefficients run(const BlockCsr& a, const Preconditioner& m, Random& random, double tolerance,
+                   int max_iterations = 1000) {
   const std::vector<double> b = random.vector(a.dofs());
   std::vector<double> x(b.size(), 0.0);
   CgCoefficients coefficients;
-  const KrylovResult result = pcg(BlockCsrOperator(a), m, b, x, {tolerance, max_iterations, {}, &coefficients});
+  const KrylovResult result =
+      pcg(BlockCsrOperator(a), m, b, x, {tolerance, max_iterations, {}, &coefficients});
   EXPECT_EQ(std::ssize(coefficients.alpha), result.iterations);
   EXPECT_EQ(std::ssize(coefficients.beta), result.iterations);
   return coefficients;
@@ -28,8 +30,9 @@ CgCoefficients run(const BlockCsr& a, const Preconditioner& m, Random& random, d
 
 // A a = λ P a
 SpectrumEnds dense_ends(const BlockCsr& a, const Eigen::MatrixXd& p) {
-  const Eigen::VectorXd lambda =
-      Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd>(dense(a), p, Eigen::EigenvaluesOnly | Eigen::Ax_lBx).eigenvalues();
+  const Eigen::VectorXd lambda = Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd>(
+                                     dense(a), p, Eigen::EigenvaluesOnly | Eigen::Ax_lBx)
+                                     .eigenvalues();
   return {lambda.minCoeff(), lambda.maxCoeff()};
 }
 
@@ -50,10 +53,12 @@ TEST(Lanczos, FindsTheEndsOfTheSpectrumUnderAFactor) {
   Random random(12);
   const BlockCsr a = mixed_spd(random, 1e-3);
   BlockCsr p = a;
-  for_each_entry(p, [](Index r, Index c, double& value) { value = r == c ? 1.5 * value : 0.7 * value; });
+  for_each_entry(
+      p, [](Index r, Index c, double& value) { value = r == c ? 1.5 * value : 0.7 * value; });
   const auto factor = make_cholesky("eigen");
   ASSERT_TRUE(factor->analyze(p).ok() && factor->factorize(p).ok());
-  const SpectrumEnds found = spectrum_ends(run(a, FactorPreconditioner(*factor, false), random, 1e-30));
+  const SpectrumEnds found =
+      spectrum_ends(run(a, FactorPreconditioner(*factor, false), random, 1e-30));
   const SpectrumEnds expected = dense_ends(a, dense(p));
   EXPECT_NEAR(found.smallest, expected.smallest, 1e-4 * expected.smallest);
   EXPECT_NEAR(found.largest, expected.largest, 1e-4 * expected.largest);

@@ -15,7 +15,8 @@ std::vector<std::uint8_t> one_diagonal_kept(const SpringGrid& grid) {
   for (Index v = 0; v + 1 < grid.nv; ++v)
     for (Index u = 0; u + 1 < grid.nu; ++u) {
       const bool rising = (u + v) % 2 == 0;
-      const Index i = grid.node(u + (rising ? 0 : 1), v), j = grid.node(u + (rising ? 1 : 0), v + 1);
+      const Index i = grid.node(u + (rising ? 0 : 1), v),
+                  j = grid.node(u + (rising ? 1 : 0), v + 1);
       kept[grid.a.pattern->find(i, j)] = kept[grid.a.pattern->find(j, i)] = 1;
     }
   return kept;
@@ -35,10 +36,12 @@ TEST(Parallelogram, OneForEachCellsOtherDiagonal) {
     EXPECT_EQ(of.a + of.c, of.b + of.d) << "no cell";
     EXPECT_TRUE(kept[p.find(of.b, of.d)]);
     EXPECT_FALSE(kept[of.block]);
-    for (const auto& [i, j] : {std::pair{of.a, of.b}, {of.b, of.c}, {of.c, of.d}, {of.d, of.a}}) EXPECT_TRUE(grid.sides[p.find(i, j)]);
+    for (const auto& [i, j] : {std::pair{of.a, of.b}, {of.b, of.c}, {of.c, of.d}, {of.d, of.a}})
+      EXPECT_TRUE(grid.sides[p.find(i, j)]);
   }
   for (std::size_t k = 1; k < list.size(); ++k)
-    EXPECT_TRUE(list[k - 1].a < list[k].a || (list[k - 1].a == list[k].a && list[k - 1].c < list[k].c));
+    EXPECT_TRUE(list[k - 1].a < list[k].a ||
+                (list[k - 1].a == list[k].a && list[k - 1].c < list[k].c));
 }
 
 TEST(Parallelogram, NoneWhereADiagonalOrASideIsMissing) {
@@ -53,13 +56,15 @@ TEST(Parallelogram, NoneWhereADiagonalOrASideIsMissing) {
   EXPECT_EQ(parallelograms(p, sides, kept).size(), 1u);
 }
 
-// The two triangles of an edge, and nodes two apart on the border of a grid whose cells' diagonals are sides: 0 and 2 have 1 and 4 in common.
+// The two triangles of an edge, and nodes two apart on the border of a grid whose cells' diagonals
+// are sides: 0 and 2 have 1 and 4 in common.
 TEST(Parallelogram, NoneAcrossASide) {
   Random random(2);
   const SpringGrid grid(random, 3, 2);
   const BlockPattern& p = *grid.a.pattern;
   std::vector<std::uint8_t> sides(grid.sides.size(), 1);
-  for (const auto& [i, j] : {std::pair{0, 2}, {3, 5}}) sides[p.find(i, j)] = sides[p.find(j, i)] = 0;
+  for (const auto& [i, j] : {std::pair{0, 2}, {3, 5}})
+    sides[p.find(i, j)] = sides[p.find(j, i)] = 0;
   EXPECT_TRUE(parallelograms(p, sides, sides).empty());
   sides = one_diagonal_kept(grid);
   EXPECT_TRUE(parallelograms(p, sides, sides).empty());
@@ -71,8 +76,11 @@ TEST(Parallelogram, StandsInForTheSpring) {
   const SpringGrid grid(random, 4, 4);
   const std::vector<std::uint8_t> kept = one_diagonal_kept(grid);
   const std::vector<Parallelogram> list = parallelograms(*grid.a.pattern, grid.sides, kept);
-  const Eigen::MatrixXd a = dense(grid.a), dropped = dense_core(grid.a, kept, {}), replaced = dense_core(grid.a, kept, list);
-  const auto energy = [](const Eigen::MatrixXd& m, const Eigen::VectorXd& x) { return x.dot(m * x); };
+  const Eigen::MatrixXd a = dense(grid.a), dropped = dense_core(grid.a, kept, {}),
+                        replaced = dense_core(grid.a, kept, list);
+  const auto energy = [](const Eigen::MatrixXd& m, const Eigen::VectorXd& x) {
+    return x.dot(m * x);
+  };
   for (int trial = 0; trial < 3; ++trial) {
     const std::vector<double> random_motion = random.vector(grid.a.dofs());
     const Eigen::VectorXd x = as_eigen(random_motion);
@@ -89,10 +97,12 @@ TEST(Parallelogram, StandsInForTheSpring) {
   Mat3 gradient;
   for (int c = 0; c < 3; ++c) gradient.col(c) = random.direction();
   Eigen::VectorXd affine(grid.a.dofs());
-  for (Index i = 0; i < grid.nu * grid.nv; ++i) affine.segment<3>(3 * i) = gradient * Vec3(i % grid.nu, i / grid.nu, 1.0);
+  for (Index i = 0; i < grid.nu * grid.nv; ++i)
+    affine.segment<3>(3 * i) = gradient * Vec3(i % grid.nu, i / grid.nu, 1.0);
   std::vector<std::uint8_t> with_diagonals = kept;
   for (const Parallelogram& of : list) with_diagonals[of.block] = with_diagonals[of.opposite] = 1;
-  EXPECT_NEAR(energy(replaced, affine), energy(dense_core(grid.a, with_diagonals, {}), affine), 1e-12 * energy(a, affine));
+  EXPECT_NEAR(energy(replaced, affine), energy(dense_core(grid.a, with_diagonals, {}), affine),
+              1e-12 * energy(a, affine));
 }
 
 }  // namespace

@@ -16,8 +16,8 @@ struct LiteralRun {
 };
 
 // uPCG line by line as the paper prints it (Section 2), with dense matrices.
-LiteralRun paper_upcg(const Eigen::MatrixXd& a, const Eigen::MatrixXd& mp_inverse, const Eigen::VectorXd& b, Eigen::VectorXd dv,
-                      double tol) {
+LiteralRun paper_upcg(const Eigen::MatrixXd& a, const Eigen::MatrixXd& mp_inverse,
+                      const Eigen::VectorXd& b, Eigen::VectorXd dv, double tol) {
   LiteralRun run;
   const double delta0 = b.transpose() * mp_inverse * b;
   Eigen::VectorXd r = b - a * dv;
@@ -60,7 +60,8 @@ void compare_with_paper(const BlockCsr& a, Preconditioner& m, Random& random, do
   ASSERT_TRUE(m.update(a).ok());
   const Index n = a.dofs();
   const std::vector<double> b = random.vector(n), guess = random.vector(n);
-  const LiteralRun literal = paper_upcg(dense(a), inverse_of(m, n), as_eigen(b), as_eigen(guess), tolerance);
+  const LiteralRun literal =
+      paper_upcg(dense(a), inverse_of(m, n), as_eigen(b), as_eigen(guess), tolerance);
 
   std::vector<double> x = guess;
   KrylovOptions options{tolerance, 1000, {}};
@@ -69,7 +70,9 @@ void compare_with_paper(const BlockCsr& a, Preconditioner& m, Random& random, do
   options.observer = [&](int iteration, double value, std::span<const double> iterate) {
     ASSERT_EQ(iteration, ++calls);
     ASSERT_LE(static_cast<std::size_t>(calls), literal.iterates.size());
-    EXPECT_LT(relative_difference(iterate, literal.iterates[static_cast<std::size_t>(calls) - 1]), 1e-8) << iteration;
+    EXPECT_LT(relative_difference(iterate, literal.iterates[static_cast<std::size_t>(calls) - 1]),
+              1e-8)
+        << iteration;
     last_value = value;
   };
   const KrylovResult result = pcg(BlockCsrOperator(a), m, b, x, options);
@@ -154,12 +157,14 @@ TEST(Pcg, ReportsTheLimit) {
 
 TEST(Pcg, ReportsAnIndefiniteMatrix) {
   SmallCase c = small_case();
-  // The preconditioner is that of the good matrix: only the curvature of a search direction can tell.
+  // The preconditioner is that of the good matrix: only the curvature of a search direction can
+  // tell.
   for_each_entry(c.a, [](Index row, Index column, double& value) {
     if (row == column && row < 3) value = -value;
   });
   const KrylovResult result = pcg(BlockCsrOperator(c.a), c.m, c.b, c.x, {1e-12, 1000, {}});
-  EXPECT_EQ(result.status.outcome, Outcome::not_positive_definite) << name_of(result.status.outcome);
+  EXPECT_EQ(result.status.outcome, Outcome::not_positive_definite)
+      << name_of(result.status.outcome);
 }
 
 TEST(Pcg, ReportsAnIndefinitePreconditioner) {

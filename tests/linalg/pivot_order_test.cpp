@@ -10,8 +10,10 @@
 namespace taut {
 namespace {
 
-// Supernodes of given sizes, the last of which is the others' parent; the others' rows are some of its pivots.
-SupernodeTree tree_of(const std::vector<Index>& sizes, const std::vector<std::vector<Index>>& rows_in_last) {
+// Supernodes of given sizes, the last of which is the others' parent; the others' rows are some of
+// its pivots.
+SupernodeTree tree_of(const std::vector<Index>& sizes,
+                      const std::vector<std::vector<Index>>& rows_in_last) {
   SupernodeTree tree;
   tree.first.push_back(0);
   for (const Index size : sizes) tree.first.push_back(tree.first.back() + size);
@@ -46,13 +48,16 @@ TEST(PivotOrder, InterleavedRowsBecomeOneRunEach) {
 }
 
 TEST(PivotOrder, OverlappingRowsOfALineInAnyOrderBecomeOneRunEach) {
-  // A separator's nodes in a mixed order: node p is at position[p] on a line, and each descendant touches four neighbours on it.
+  // A separator's nodes in a mixed order: node p is at position[p] on a line, and each descendant
+  // touches four neighbours on it.
   const std::vector<Index> position{7, 2, 9, 0, 5, 1, 8, 3, 6, 4};
   std::vector<std::vector<Index>> rows;
   for (Index from = 0; from < 7; ++from) {
     rows.emplace_back();
     for (Index p = 0; p < 10; ++p)
-      if (position[static_cast<std::size_t>(p)] >= from && position[static_cast<std::size_t>(p)] < from + 4) rows.back().push_back(p);
+      if (position[static_cast<std::size_t>(p)] >= from &&
+          position[static_cast<std::size_t>(p)] < from + 4)
+        rows.back().push_back(p);
   }
   const SupernodeTree tree = tree_of({1, 1, 1, 1, 1, 1, 1, 10}, rows);
   const std::vector<Index> place = pivot_places(tree);
@@ -63,7 +68,8 @@ TEST(PivotOrder, NodesStayInTheirSupernode) {
   const SupernodeTree tree = tree_of({3, 2, 5}, {{0, 4}, {1, 3, 4}});
   const std::vector<Index> place = pivot_places(tree);
   for (Index s = 0; s < tree.supernodes(); ++s) {
-    std::vector<Index> moved(place.begin() + tree.first[s], place.begin() + tree.first[s + 1]), expected(moved.size());
+    std::vector<Index> moved(place.begin() + tree.first[s], place.begin() + tree.first[s + 1]),
+        expected(moved.size());
     std::ranges::sort(moved);
     std::iota(expected.begin(), expected.end(), tree.first[s]);
     EXPECT_EQ(moved, expected) << s;

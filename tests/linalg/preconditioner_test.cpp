@@ -26,7 +26,8 @@ TEST(DiagonalPreconditioner, DividesByTheDiagonal) {
   DiagonalPreconditioner m;
   ASSERT_TRUE(m.update(a).ok());
   const std::vector<double> r = random.vector(a.dofs());
-  EXPECT_LT(relative_difference(applied(m, r), as_eigen(r).cwiseQuotient(dense(a).diagonal())), 1e-15);
+  EXPECT_LT(relative_difference(applied(m, r), as_eigen(r).cwiseQuotient(dense(a).diagonal())),
+            1e-15);
 }
 
 TEST(BlockDiagonalPreconditioner, InvertsTheDiagonalBlocks) {
@@ -37,7 +38,8 @@ TEST(BlockDiagonalPreconditioner, InvertsTheDiagonalBlocks) {
     const Eigen::MatrixXd d = dense(a);
     Eigen::MatrixXd blocks = Eigen::MatrixXd::Zero(a.dofs(), a.dofs());
     for (Index i = 0; i < p.rows(); ++i)
-      blocks.block(p.dof_start[i], p.dof_start[i], p.dim(i), p.dim(i)) = d.block(p.dof_start[i], p.dof_start[i], p.dim(i), p.dim(i));
+      blocks.block(p.dof_start[i], p.dof_start[i], p.dim(i), p.dim(i)) =
+          d.block(p.dof_start[i], p.dof_start[i], p.dim(i), p.dim(i));
     BlockDiagonalPreconditioner m;
     ASSERT_TRUE(m.update(a).ok());
     const std::vector<double> r = random.vector(a.dofs());
@@ -69,11 +71,14 @@ TEST(Preconditioner, ReportsWhereTheMatrixIsNotPositive) {
     a.block(7, a.pattern->diagonal[7])[a.pattern->width(7) + 1] = bad;  // node 7, unknown 22
     DiagonalPreconditioner diagonal;
     const Status scalar = diagonal.update(a);
-    EXPECT_EQ(scalar.outcome, std::isfinite(bad) ? Outcome::not_positive_definite : Outcome::not_finite);
+    EXPECT_EQ(scalar.outcome,
+              std::isfinite(bad) ? Outcome::not_positive_definite : Outcome::not_finite);
     EXPECT_NE(scalar.message.find("22"), std::string::npos) << scalar.message;
     BlockDiagonalPreconditioner block;
     const Status status = block.update(a);
-    EXPECT_EQ(status.outcome, std::isfinite(bad) ? Outcome::not_positive_definite : Outcome::not_finite) << bad;
+    EXPECT_EQ(status.outcome,
+              std::isfinite(bad) ? Outcome::not_positive_definite : Outcome::not_finite)
+        << bad;
     EXPECT_NE(status.message.find("node 7"), std::string::npos) << status.message;
   }
 }

@@ -1,5 +1,6 @@
 #pragma once
-// Random sparse matrices for tests, and the same as dense matrices of Eigen, which judge the results.
+// Random sparse matrices for tests, and the same as dense matrices of Eigen, which judge the
+// results.
 
 #include <Eigen/Dense>
 #include <random>
@@ -15,7 +16,9 @@ namespace taut::test {
 class Random {
  public:
   explicit Random(std::uint32_t seed) : engine_(seed) {}
-  double uniform(double low = -1.0, double high = 1.0) { return low + (high - low) * (engine_() / 4294967296.0); }
+  double uniform(double low = -1.0, double high = 1.0) {
+    return low + (high - low) * (engine_() / 4294967296.0);
+  }
   Index below(Index n) { return static_cast<Index>(engine_() % static_cast<std::uint32_t>(n)); }
   std::vector<double> vector(Index n) {
     std::vector<double> v(static_cast<std::size_t>(n));
@@ -33,8 +36,10 @@ class Random {
   std::mt19937 engine_;
 };
 
-// A connected, symmetric graph: a chain with `extra` random links a node, at most `reach` nodes apart.
-inline std::vector<std::vector<Index>> random_graph(Random& random, Index nodes, Index extra, Index reach) {
+// A connected, symmetric graph: a chain with `extra` random links a node, at most `reach` nodes
+// apart.
+inline std::vector<std::vector<Index>> random_graph(Random& random, Index nodes, Index extra,
+                                                    Index reach) {
   std::vector<std::set<Index>> links(static_cast<std::size_t>(nodes));
   const auto link = [&](Index i, Index j) { links[i].insert(j), links[j].insert(i); };
   for (Index i = 0; i + 1 < nodes; ++i) link(i, i + 1);
@@ -56,7 +61,8 @@ void for_each_entry(BlockCsr& a, Visit visit) {
     for (Index k = p.row_start[i]; k < p.row_start[i + 1]; ++k)
       for (Index r = 0; r < p.dim(i); ++r)
         for (Index c = 0; c < p.dim(p.column[k]); ++c)
-          visit(p.dof_start[i] + r, p.dof_start[p.column[k]] + c, a.block(i, k)[r * p.width(i) + c]);
+          visit(p.dof_start[i] + r, p.dof_start[p.column[k]] + c,
+                a.block(i, k)[r * p.width(i) + c]);
 }
 
 inline BlockCsr random_matrix(Random& random, std::shared_ptr<const BlockPattern> pattern) {
@@ -65,9 +71,10 @@ inline BlockCsr random_matrix(Random& random, std::shared_ptr<const BlockPattern
   return a;
 }
 
-// Symmetric and diagonally dominant by a share of `margin`. But for the signs of the unknowns it is the Laplacian of a graph, so that its
-// condition number really is of the order of 1/margin.
-inline BlockCsr random_spd(Random& random, std::shared_ptr<const BlockPattern> pattern, double margin = 0.05) {
+// Symmetric and diagonally dominant by a share of `margin`. But for the signs of the unknowns it is
+// the Laplacian of a graph, so that its condition number really is of the order of 1/margin.
+inline BlockCsr random_spd(Random& random, std::shared_ptr<const BlockPattern> pattern,
+                           double margin = 0.05) {
   BlockCsr a(std::move(pattern));
   std::vector<double> row_sum(static_cast<std::size_t>(a.dofs()), 0.0), sign(row_sum);
   for (double& s : sign) s = random.below(2) ? 1.0 : -1.0;
@@ -84,11 +91,14 @@ inline BlockCsr random_spd(Random& random, std::shared_ptr<const BlockPattern> p
 
 inline Eigen::MatrixXd dense(const BlockCsr& a) {
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(a.dofs(), a.dofs());
-  for_each_entry(const_cast<BlockCsr&>(a), [&](Index row, Index column, double& value) { result(row, column) = value; });
+  for_each_entry(const_cast<BlockCsr&>(a),
+                 [&](Index row, Index column, double& value) { result(row, column) = value; });
   return result;
 }
 
-inline Eigen::Map<const Eigen::VectorXd> as_eigen(std::span<const double> v) { return {v.data(), static_cast<Eigen::Index>(v.size())}; }
+inline Eigen::Map<const Eigen::VectorXd> as_eigen(std::span<const double> v) {
+  return {v.data(), static_cast<Eigen::Index>(v.size())};
+}
 
 inline double relative_difference(std::span<const double> found, const Eigen::VectorXd& expected) {
   return (as_eigen(found) - expected).norm() / std::max(expected.norm(), 1e-300);

@@ -12,7 +12,8 @@
 namespace taut::test {
 namespace {
 
-// Springs of stiffness 1 between the nodes of a cubic lattice, along edges and diagonals, and masses: K + mass I.
+// Springs of stiffness 1 between the nodes of a cubic lattice, along edges and diagonals, and
+// masses: K + mass I.
 struct Lattice {
   BlockCsr a;
   std::vector<double> positions;
@@ -25,7 +26,9 @@ Lattice lattice(Index nx, Index ny, Index nz, double mass) {
     for (Index j = 0; j < ny; ++j)
       for (Index i = 0; i < nx; ++i) x.emplace_back(i, j, k);
   std::vector<std::vector<Index>> columns(x.size());
-  const auto linked = [&](Index p, Index q) { return p != q && (x[p] - x[q]).cwiseAbs().maxCoeff() < 1.5; };
+  const auto linked = [&](Index p, Index q) {
+    return p != q && (x[p] - x[q]).cwiseAbs().maxCoeff() < 1.5;
+  };
   const Index n = static_cast<Index>(x.size());
   for (Index p = 0; p < n; ++p)
     for (Index q = 0; q < n; ++q)
@@ -46,7 +49,8 @@ Lattice lattice(Index nx, Index ny, Index nz, double mass) {
     }
     put(pattern.diagonal[p], diagonal);
   }
-  for (const Vec3& point : x) result.positions.insert(result.positions.end(), point.data(), point.data() + 3);
+  for (const Vec3& point : x)
+    result.positions.insert(result.positions.end(), point.data(), point.data() + 3);
   return result;
 }
 
@@ -58,7 +62,8 @@ BlockCsr poisson(Index width) {
     if (i >= width) columns[i].push_back(i - width), columns[i - width].push_back(i);
   }
   BlockCsr a(make_pattern(std::move(columns), 1));
-  for_each_entry(a, [](Index row, Index column, double& value) { value = row == column ? 4.0 : -1.0; });
+  for_each_entry(
+      a, [](Index row, Index column, double& value) { value = row == column ? 4.0 : -1.0; });
   return a;
 }
 
@@ -76,7 +81,8 @@ TEST(Aggregation, CoversAGridWithConnectedGroups) {
   WeightedGraph graph{{0}, {}, {}};
   for (Index i = 0; i < a.rows(); ++i) {
     for (Index k = a.pattern->row_start[i]; k < a.pattern->row_start[i + 1]; ++k)
-      if (a.pattern->column[k] != i) graph.neighbour.push_back(a.pattern->column[k]), graph.weight.push_back(1.0);
+      if (a.pattern->column[k] != i)
+        graph.neighbour.push_back(a.pattern->column[k]), graph.weight.push_back(1.0);
     graph.start.push_back(static_cast<Index>(graph.neighbour.size()));
   }
   const Aggregation result = aggregate(graph);
@@ -87,7 +93,8 @@ TEST(Aggregation, CoversAGridWithConnectedGroups) {
     ASSERT_TRUE(result.group[i] >= 0 && result.group[i] < result.groups);
     ++size[result.group[i]];
     bool has_neighbour = false;
-    for (Index k = graph.start[i]; k < graph.start[i + 1]; ++k) has_neighbour |= result.group[graph.neighbour[k]] == result.group[i];
+    for (Index k = graph.start[i]; k < graph.start[i + 1]; ++k)
+      has_neighbour |= result.group[graph.neighbour[k]] == result.group[i];
     EXPECT_TRUE(has_neighbour) << i;
   }
   EXPECT_GT(std::ranges::min(size), 1);
@@ -100,7 +107,8 @@ TEST(RigidMotions, AreTheNullSpaceOfSprings) {
   const Lattice free = lattice(4, 3, 3, 0.0);
   const NearNullSpace space = rigid_motions(free.a.rows(), free.positions);
   ASSERT_EQ(space.modes, 6);
-  const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>> modes(space.values.data(), free.a.dofs(), 6);
+  const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>> modes(
+      space.values.data(), free.a.dofs(), 6);
   EXPECT_LT((dense(free.a) * modes).norm(), 1e-12);
   const Eigen::VectorXd sizes = modes.colPivHouseholderQr().matrixQR().diagonal().cwiseAbs();
   EXPECT_GT(sizes.minCoeff(), 0.1 * sizes.maxCoeff());  // independent, and of one scale
@@ -110,7 +118,8 @@ TEST(RigidMotions, AreTheNullSpaceOfSprings) {
 TEST(SmoothedAggregation, IsSymmetricPositiveDefinite) {
   Random random(2);
   for (const Index dim : {3, 1, 0}) {
-    const BlockCsr a = random_spd(random, pattern_of(random, random_graph(random, 150, 2, 6), dim), 1e-2);
+    const BlockCsr a =
+        random_spd(random, pattern_of(random, random_graph(random, 150, 2, 6), dim), 1e-2);
     SmoothedAggregation amg({.coarsest_nodes = 5});
     ASSERT_TRUE(amg.update(a).ok());
     EXPECT_GE(amg.level_nodes().size(), 3u);
@@ -191,7 +200,8 @@ TEST(SmoothedAggregation, ReportsWhereTheMatrixIsNotPositive) {
     a.block(7, a.pattern->diagonal[7])[a.pattern->width(7) + 1] = bad;
     SmoothedAggregation amg;
     const Status status = amg.update(a);
-    EXPECT_EQ(status.outcome, std::isfinite(bad) ? Outcome::not_positive_definite : Outcome::not_finite);
+    EXPECT_EQ(status.outcome,
+              std::isfinite(bad) ? Outcome::not_positive_definite : Outcome::not_finite);
     EXPECT_NE(status.message.find("node 7"), std::string::npos) << status.message;
   }
 }

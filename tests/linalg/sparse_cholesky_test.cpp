@@ -1,4 +1,5 @@
-// Every factorisation that is registered in this program: the test program of linalg has Taut's own and Eigen's, that of taut_cholmod has CHOLMOD's too.
+// Every factorisation that is registered in this program: the test program of linalg has Taut's own
+// and Eigen's, that of taut_cholmod has CHOLMOD's too.
 
 #include "taut/linalg/sparse_cholesky.h"
 
@@ -16,7 +17,8 @@ class Cholesky : public testing::TestWithParam<std::string> {
   std::unique_ptr<SparseCholesky> cholesky_ = make_cholesky(GetParam());
 };
 
-INSTANTIATE_TEST_SUITE_P(Backends, Cholesky, testing::ValuesIn(cholesky_names()), [](const auto& backend) { return backend.param; });
+INSTANTIATE_TEST_SUITE_P(Backends, Cholesky, testing::ValuesIn(cholesky_names()),
+                         [](const auto& backend) { return backend.param; });
 
 BlockCsr mixed_spd(Random& random, Index nodes) {
   const auto dims = random_dims(random, nodes);
@@ -24,10 +26,15 @@ BlockCsr mixed_spd(Random& random, Index nodes) {
 }
 
 // 3x3 blocks with much fill-in, so that CHOLMOD takes its supernodal way.
-BlockCsr supernodal_spd(Random& random) { return random_spd(random, make_pattern(random_graph(random, 200, 6, 150), 3), 1e-2); }
+BlockCsr supernodal_spd(Random& random) {
+  return random_spd(random, make_pattern(random_graph(random, 200, 6, 150), 3), 1e-2);
+}
 
-// Of a solution, relative. Single precision: the matrices here have condition numbers of some hundreds.
-double tolerance(const SparseCholesky& cholesky) { return cholesky.name() == "block_single" ? 3e-5 : 1e-11; }
+// Of a solution, relative. Single precision: the matrices here have condition numbers of some
+// hundreds.
+double tolerance(const SparseCholesky& cholesky) {
+  return cholesky.name() == "block_single" ? 3e-5 : 1e-11;
+}
 
 void expect_solves(SparseCholesky& cholesky, const BlockCsr& a, Random& random) {
   const std::vector<double> b = random.vector(a.dofs());
@@ -86,7 +93,8 @@ TEST_P(Cholesky, PermutedSolveIsThatOfThePermutedMatrix) {
   }
 }
 
-// The fill-in counted by a dense elimination of the permuted pattern: what statistics() says must be at least this, and not much more.
+// The fill-in counted by a dense elimination of the permuted pattern: what statistics() says must
+// be at least this, and not much more.
 TEST_P(Cholesky, StatisticsCountTheFactor) {
   Random random(4);
   const BlockCsr a = random_spd(random, make_pattern(random_graph(random, 60, 2, 20), 3), 1e-2);
@@ -99,8 +107,8 @@ TEST_P(Cholesky, StatisticsCountTheFactor) {
   const Eigen::MatrixXd l = permuted.llt().matrixL();
   const double nonzeros = static_cast<double>((l.array().abs() > 1e-15).count());
   const FactorStatistics statistics = cholesky_->statistics();
-  // With or without the diagonal (LLᵀ or LDLᵀ), and supernodes may store some zeros. Block Cholesky counts before it merges supernodes and
-  // orders their pivots anew, which fills in a little more.
+  // With or without the diagonal (LLᵀ or LDLᵀ), and supernodes may store some zeros. Block Cholesky
+  // counts before it merges supernodes and orders their pivots anew, which fills in a little more.
   const double more = GetParam().starts_with("block") ? 1.25 : 1.0;
   EXPECT_GE(more * statistics.nonzeros, nonzeros - a.dofs());
   EXPECT_LE(statistics.nonzeros, 1.5 * nonzeros);
@@ -113,15 +121,18 @@ void expect_refused(SparseCholesky& cholesky, const BlockCsr& a, Index unknown) 
   const Status status = cholesky.factorize(a);
   EXPECT_EQ(status.outcome, Outcome::not_positive_definite) << name_of(status.outcome);
   if (unknown >= 0) {
-    EXPECT_NE(status.message.find("unknown " + std::to_string(unknown)), std::string::npos) << status.message;
+    EXPECT_NE(status.message.find("unknown " + std::to_string(unknown)), std::string::npos)
+        << status.message;
   }
 }
 
 TEST_P(Cholesky, ReportsTheUnknownThatIsNotPositive) {
   for (const double bad : {-2.0, 0.0}) {
     BlockCsr a(make_pattern({{1}, {0}, {}, {4}, {3}}, 1));
-    for_each_entry(a, [](Index row, Index column, double& value) { value = row == column ? 3.0 : 1.0; });
-    a.block(2, a.pattern->diagonal[2])[0] = bad;  // a node of its own: the pivot is the entry itself
+    for_each_entry(
+        a, [](Index row, Index column, double& value) { value = row == column ? 3.0 : 1.0; });
+    // a node of its own: the pivot is the entry itself
+    a.block(2, a.pattern->diagonal[2])[0] = bad;
     expect_refused(*cholesky_, a, bad < 0.0 ? 2 : -1);
   }
 }

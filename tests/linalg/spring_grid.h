@@ -1,5 +1,6 @@
-// A grid of unit masses and random springs to the twelve neighbours of a cloth's node, as a matrix of 3x3 blocks; and the dense matrix that leaving
-// springs out, or parallelograms in their place, makes of one.
+// A grid of unit masses and random springs to the twelve neighbours of a cloth's node, as a matrix
+// of 3x3 blocks; and the dense matrix that leaving springs out, or parallelograms in their place,
+// makes of one.
 
 #pragma once
 
@@ -8,8 +9,10 @@
 
 namespace taut::test {
 
-// A without the springs that are not kept, and with the parallelograms in their place: from springs, not from how blocks are added.
-inline Eigen::MatrixXd dense_core(const BlockCsr& a, std::span<const std::uint8_t> kept, std::span<const Parallelogram> replaced) {
+// A without the springs that are not kept, and with the parallelograms in their place: from
+// springs, not from how blocks are added.
+inline Eigen::MatrixXd dense_core(const BlockCsr& a, std::span<const std::uint8_t> kept,
+                                  std::span<const Parallelogram> replaced) {
   const BlockPattern& p = *a.pattern;
   const Eigen::MatrixXd all = dense(a);
   Eigen::MatrixXd result = all;
@@ -19,10 +22,12 @@ inline Eigen::MatrixXd dense_core(const BlockCsr& a, std::span<const std::uint8_
   };
   for (Index i = 0; i < p.rows(); ++i)
     for (Index k = p.row_start[i]; k < p.row_start[i + 1]; ++k)
-      if (const Index j = p.column[k]; j > i && !kept[k]) spring(i, j, all.block<3, 3>(3 * i, 3 * j));
+      if (const Index j = p.column[k]; j > i && !kept[k])
+        spring(i, j, all.block<3, 3>(3 * i, 3 * j));
   for (const Parallelogram& of : replaced) {
     const Mat3 b = -all.block<3, 3>(3 * of.a, 3 * of.c);
-    spring(of.a, of.b, b), spring(of.b, of.c, b), spring(of.c, of.d, b), spring(of.d, of.a, b), spring(of.b, of.d, -b);
+    spring(of.a, of.b, b), spring(of.b, of.c, b), spring(of.c, of.d, b), spring(of.d, of.a, b),
+        spring(of.b, of.d, -b);
   }
   return result;
 }
@@ -32,7 +37,8 @@ struct SpringGrid {
   BlockCsr a;
   std::vector<std::uint8_t> sides;  // grid edges, and the diagonal
 
-  SpringGrid(Random& random, Index u_nodes, Index v_nodes, double stiffness = 10.0) : nu(u_nodes), nv(v_nodes) {
+  SpringGrid(Random& random, Index u_nodes, Index v_nodes, double stiffness = 10.0)
+      : nu(u_nodes), nv(v_nodes) {
     std::vector<std::vector<Index>> columns(static_cast<std::size_t>(nu * nv));
     const auto for_links = [&](auto visit) {
       for (Index v = 0; v < nv; ++v)
@@ -60,7 +66,8 @@ struct SpringGrid {
   Index node(Index u, Index v) const { return v * nu + u; }
   void add(Index i, Index j, const Mat3& block) {
     for (Index r = 0; r < 3; ++r)
-      for (Index c = 0; c < 3; ++c) a.block(i, a.pattern->find(i, j))[r * a.pattern->width(i) + c] += block(r, c);
+      for (Index c = 0; c < 3; ++c)
+        a.block(i, a.pattern->find(i, j))[r * a.pattern->width(i) + c] += block(r, c);
   }
 };
 

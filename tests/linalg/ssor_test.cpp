@@ -13,7 +13,8 @@ TEST(Ssor, IsTheDenseFormula) {
   Random random(1);
   for (const Index dim : {3, 1, 0, 0})
     for (const double omega : {1.0, 1.4, 0.6}) {
-      const BlockCsr a = random_spd(random, pattern_of(random, random_graph(random, 50, 3, 15), dim));
+      const BlockCsr a =
+          random_spd(random, pattern_of(random, random_graph(random, 50, 3, 15), dim));
       const BlockPattern& p = *a.pattern;
       const Eigen::MatrixXd full = dense(a);
       Eigen::MatrixXd lower = Eigen::MatrixXd::Zero(a.dofs(), a.dofs()), d = lower;
@@ -22,7 +23,8 @@ TEST(Ssor, IsTheDenseFormula) {
         d.block(at, at, size, size) = full.block(at, at, size, size);
         lower.block(at, 0, size, at) = full.block(at, 0, size, at);
       }
-      const Eigen::MatrixXd left = d / omega + lower, m = omega / (2.0 - omega) * left * d.inverse() * left.transpose();
+      const Eigen::MatrixXd left = d / omega + lower,
+                            m = omega / (2.0 - omega) * left * d.inverse() * left.transpose();
       BlockSsor ssor(omega);
       ASSERT_TRUE(ssor.update(a).ok());
       const std::vector<double> r = random.vector(a.dofs());
@@ -37,7 +39,8 @@ TEST(Ssor, IsTheDenseFormula) {
 // On a block diagonal matrix symmetric Gauss-Seidel is the inverse.
 TEST(Ssor, IsExactWithoutCoupling) {
   Random random(2);
-  const BlockCsr a = random_spd(random, make_pattern(std::vector<std::vector<Index>>(10), random_dims(random, 10)));
+  const BlockCsr a = random_spd(
+      random, make_pattern(std::vector<std::vector<Index>>(10), random_dims(random, 10)));
   BlockSsor ssor;
   ASSERT_TRUE(ssor.update(a).ok());
   EXPECT_LT((dense_inverse(ssor, a.dofs()) - dense(a).inverse()).norm(), 1e-12);
@@ -51,7 +54,8 @@ TEST(Ssor, ReportsWhereTheMatrixIsNotPositive) {
     a.block(7, a.pattern->diagonal[7])[a.pattern->width(7) + 1] = bad;
     BlockSsor ssor;
     const Status status = ssor.update(a);
-    EXPECT_EQ(status.outcome, std::isfinite(bad) ? Outcome::not_positive_definite : Outcome::not_finite);
+    EXPECT_EQ(status.outcome,
+              std::isfinite(bad) ? Outcome::not_positive_definite : Outcome::not_finite);
     EXPECT_NE(status.message.find("node 7"), std::string::npos) << status.message;
   }
 }

@@ -17,7 +17,9 @@ TriangleMesh fan_of(std::vector<Vec3> positions, std::vector<Triangle> triangles
   return {std::move(positions), std::move(triangles), {}};
 }
 
-TriangleMesh two_triangles() { return fan_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{0, 1, 2}, {1, 3, 2}}); }
+TriangleMesh two_triangles() {
+  return fan_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{0, 1, 2}, {1, 3, 2}});
+}
 
 TEST(Topology, TwoTrianglesShareOneHinge) {
   const Topology topology = build_topology(two_triangles());
@@ -44,7 +46,8 @@ TEST(Topology, GridCountsAndEuler) {
   for (const Hinge& hinge : topology.hinges)
     for (int s = 0; s < 2; ++s) {
       const Triangle& t = mesh.triangles[hinge.triangle[s]];
-      EXPECT_EQ((std::set<Index>{t.begin(), t.end()}), (std::set<Index>{hinge.edge.a, hinge.edge.b, hinge.opposite[s]}));
+      EXPECT_EQ((std::set<Index>{t.begin(), t.end()}),
+                (std::set<Index>{hinge.edge.a, hinge.edge.b, hinge.opposite[s]}));
     }
 }
 
@@ -57,7 +60,8 @@ TEST(Topology, DoesNotDependOnWinding) {
 }
 
 TEST(Topology, ThreeTrianglesOnOneEdgeGetTwoHinges) {
-  const TriangleMesh mesh = fan_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}}, {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}});
+  const TriangleMesh mesh = fan_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}},
+                                   {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}});
   const Topology topology = build_topology(mesh);
   EXPECT_EQ(topology.non_manifold_edges, (std::vector<Edge>{{0, 1}}));
   ASSERT_EQ(topology.hinges.size(), 2u);
@@ -67,7 +71,8 @@ TEST(Topology, ThreeTrianglesOnOneEdgeGetTwoHinges) {
 }
 
 TEST(Topology, DoubledTriangleGivesNoHingeOfNoLength) {
-  const Topology topology = build_topology(fan_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {2, 1, 0}}));
+  const Topology topology =
+      build_topology(fan_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {2, 1, 0}}));
   EXPECT_EQ(topology.edges.size(), 3u);
   EXPECT_TRUE(topology.hinges.empty());
   EXPECT_EQ(topology.folded_hinges, 3);
@@ -125,10 +130,14 @@ TEST(CheckClothMesh, NamesTheFirstFault) {
   TriangleMesh mesh = two_triangles();
   EXPECT_EQ(complaint(mesh), "");
   mesh.positions.emplace_back(9, 9, 9);
-  EXPECT_EQ(complaint(mesh).rfind("shirt.obj: vertex 5 is in no triangle and", 0), 0u) << complaint(mesh);
+  EXPECT_EQ(complaint(mesh).rfind("shirt.obj: vertex 5 is in no triangle and", 0), 0u)
+      << complaint(mesh);
   mesh.triangles.push_back({0, 4, 0});
   mesh.triangles.push_back({1, 1, 1});
-  EXPECT_EQ(complaint(mesh).rfind("shirt.obj: triangle 3 (vertices 1, 5, 1) names a vertex twice (2 in all)", 0), 0u) << complaint(mesh);
+  EXPECT_EQ(complaint(mesh).rfind(
+                "shirt.obj: triangle 3 (vertices 1, 5, 1) names a vertex twice (2 in all)", 0),
+            0u)
+      << complaint(mesh);
 }
 
 }  // namespace

@@ -34,8 +34,10 @@ std::vector<Vec3> corners(const BoundingBox& box) {
   return points;
 }
 
-// Inside the margins, and no closer camera possible: two opposite borders are touched, or the eye would touch the nearest point.
-void expect_framed(const Camera& camera, const std::vector<Vec3>& points, int width, int height, double margin) {
+// Inside the margins, and no closer camera possible: two opposite borders are touched, or the eye
+// would touch the nearest point.
+void expect_framed(const Camera& camera, const std::vector<Vec3>& points, int width, int height,
+                   double margin) {
   const Extent e = seen_extent(camera, points, width, height);
   const double mx = margin * width, my = margin * height, slack = 1e-6 * width;
   EXPECT_GT(e.nearest, 0.0);
@@ -48,7 +50,8 @@ void expect_framed(const Camera& camera, const std::vector<Vec3>& points, int wi
   BoundingBox box;
   for (const Vec3& p : points) box.extend(p);
   const bool near = e.nearest < 0.011 * box.diagonal().norm();
-  EXPECT_TRUE(full_width || full_height || near) << e.left << " " << e.right << " " << e.top << " " << e.bottom;
+  EXPECT_TRUE(full_width || full_height || near)
+      << e.left << " " << e.right << " " << e.top << " " << e.bottom;
 }
 
 TEST(Camera, ProjectsByTheFieldOfView) {
@@ -70,13 +73,21 @@ TEST(Camera, LookingAlongUpStillHasAxes) {
 
 TEST(Framing, BoxesFillThePictureUpToTheMargin) {
   const std::vector<BoundingBox> boxes{
-      BoundingBox(Vec3(-0.5, -0.5, -0.5), Vec3(0.5, 0.5, 0.5)),  BoundingBox(Vec3(-1, 0, -1), Vec3(1, 0, 1)),      // a flat sheet
-      BoundingBox(Vec3(0, 0, 0), Vec3(10, 0.01, 0.01)),          BoundingBox(Vec3(0, 0, 0), Vec3(0, 0, 3)),        // a line
-      BoundingBox(Vec3(1e5, 1e5, 0), Vec3(1e5 + 1, 1e5 + 2, 3)), BoundingBox(Vec3::Zero(), Vec3::Constant(2e-3)),  // far away; tiny
+      // a flat sheet
+      BoundingBox(Vec3(-0.5, -0.5, -0.5), Vec3(0.5, 0.5, 0.5)),
+      BoundingBox(Vec3(-1, 0, -1), Vec3(1, 0, 1)),
+      // a line
+      BoundingBox(Vec3(0, 0, 0), Vec3(10, 0.01, 0.01)),
+      BoundingBox(Vec3(0, 0, 0), Vec3(0, 0, 3)),
+      // far away; tiny
+      BoundingBox(Vec3(1e5, 1e5, 0), Vec3(1e5 + 1, 1e5 + 2, 3)),
+      BoundingBox(Vec3::Zero(), Vec3::Constant(2e-3)),
   };
   for (const BoundingBox& box : boxes)
-    for (const Vec3& direction : {FramingOptions{}.direction, Vec3(1, 0, 0), Vec3(-1, 2, 0.1), Vec3(0.3, -1, -0.8)})
-      for (const auto& [width, height] : {std::pair{480, 360}, std::pair{1280, 720}, std::pair{300, 900}})
+    for (const Vec3& direction :
+         {FramingOptions{}.direction, Vec3(1, 0, 0), Vec3(-1, 2, 0.1), Vec3(0.3, -1, -0.8)})
+      for (const auto& [width, height] :
+           {std::pair{480, 360}, std::pair{1280, 720}, std::pair{300, 900}})
         for (const double margin : {0.0, 0.05, 0.3}) {
           FramingOptions options;
           options.direction = direction;
@@ -85,7 +96,8 @@ TEST(Framing, BoxesFillThePictureUpToTheMargin) {
           const Camera camera = frame_camera(box, options);
           expect_framed(camera, corners(box), width, height, margin);
           EXPECT_GT((camera.eye - camera.target).dot(direction), 0.0);
-          EXPECT_LT((camera.eye - camera.target).cross(direction.normalized()).norm(), 1e-9 * (1 + camera.eye.norm()));
+          EXPECT_LT((camera.eye - camera.target).cross(direction.normalized()).norm(),
+                    1e-9 * (1 + camera.eye.norm()));
         }
 }
 
@@ -102,7 +114,8 @@ TEST(Framing, PointsAreFramedTighterThanTheirBox) {
   options.aspect = 2.0;
   const Camera tight = frame_camera(std::span<const Vec3>(points), options);
   expect_framed(tight, points, 800, 400, options.margin);
-  EXPECT_LT((tight.eye - tight.target).norm(), 0.8 * (frame_camera(box, options).eye - box.center()).norm());
+  EXPECT_LT((tight.eye - tight.target).norm(),
+            0.8 * (frame_camera(box, options).eye - box.center()).norm());
 }
 
 TEST(Framing, AFlatSheetSeenEdgeOnOrFromAboveIsInView) {
@@ -111,7 +124,8 @@ TEST(Framing, AFlatSheetSeenEdgeOnOrFromAboveIsInView) {
   for (const Vec3& direction : {Vec3(1, 0, 0), Vec3(0, 0, 1), Vec3(0, 0, -1)}) {
     options.direction = direction;
     const Extent e = seen_extent(frame_camera(sheet, options), corners(sheet), 1600, 900);
-    EXPECT_TRUE(e.nearest > 0 && e.left >= 79.99 && e.right <= 1520.01 && e.top >= 44.99 && e.bottom <= 855.01);
+    EXPECT_TRUE(e.nearest > 0 && e.left >= 79.99 && e.right <= 1520.01 && e.top >= 44.99 &&
+                e.bottom <= 855.01);
   }
 }
 
@@ -126,7 +140,8 @@ TEST(Framing, ASinglePointIsFramedAsOneMetre) {
 
 TEST(Framing, BadInputIsRefused) {
   const BoundingBox box(Vec3::Zero(), Vec3::Ones());
-  const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+  const double nan = std::numeric_limits<double>::quiet_NaN(),
+               inf = std::numeric_limits<double>::infinity();
   EXPECT_THROW(frame_camera(BoundingBox()), InputError);
   EXPECT_THROW(frame_camera(std::span<const Vec3>()), InputError);
   EXPECT_THROW(frame_camera(BoundingBox(Vec3::Zero(), Vec3(1, inf, 1))), InputError);

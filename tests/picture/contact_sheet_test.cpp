@@ -14,8 +14,9 @@ namespace fs = std::filesystem;
 class ContactSheet : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ =
-        fs::temp_directory_path() / ("taut_contact_sheet_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+    folder_ = fs::temp_directory_path() /
+              ("taut_contact_sheet_" +
+               std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
     fs::remove_all(folder_);
   }
   void TearDown() override { fs::remove_all(folder_); }
@@ -25,7 +26,8 @@ class ContactSheet : public testing::Test {
 // A PNG file as cairo reads it back.
 class Decoded {
  public:
-  explicit Decoded(const fs::path& path) : surface_(cairo_image_surface_create_from_png(path.c_str())) {}
+  explicit Decoded(const fs::path& path)
+      : surface_(cairo_image_surface_create_from_png(path.c_str())) {}
   ~Decoded() { cairo_surface_destroy(surface_); }
   Decoded(const Decoded&) = delete;
   Decoded& operator=(const Decoded&) = delete;
@@ -33,7 +35,8 @@ class Decoded {
   int width() const { return cairo_image_surface_get_width(surface_); }
   int height() const { return cairo_image_surface_get_height(surface_); }
   std::uint32_t pixel(int x, int y) const {
-    const unsigned char* row = cairo_image_surface_get_data(surface_) + y * cairo_image_surface_get_stride(surface_);
+    const unsigned char* row =
+        cairo_image_surface_get_data(surface_) + y * cairo_image_surface_get_stride(surface_);
     return reinterpret_cast<const std::uint32_t*>(row)[x] & 0xffffffU;
   }
 
@@ -44,7 +47,8 @@ class Decoded {
 Image plain(int width, int height, std::uint32_t colour) {
   Image image{width, height, {}};
   for (int i = 0; i < width * height; ++i)
-    for (const int shift : {16, 8, 0}) image.rgb.push_back(static_cast<std::uint8_t>(colour >> shift));
+    for (const int shift : {16, 8, 0})
+      image.rgb.push_back(static_cast<std::uint8_t>(colour >> shift));
   return image;
 }
 
@@ -69,13 +73,15 @@ Patch find(const Decoded& sheet, std::uint32_t colour) {
 int ink_between(const Decoded& sheet, int left, int right, int top, int bottom) {
   int count = 0;
   for (int y = std::max(0, top); y < std::min(bottom, sheet.height()); ++y)
-    for (int x = std::max(0, left); x < std::min(right, sheet.width()); ++x) count += sheet.pixel(x, y) != 0xffffffU ? 1 : 0;
+    for (int x = std::max(0, left); x < std::min(right, sheet.width()); ++x)
+      count += sheet.pixel(x, y) != 0xffffffU ? 1 : 0;
   return count;
 }
 
 TEST_F(ContactSheet, StillIsReadBackBitForBit) {
   Image image = plain(37, 23, 0);
-  for (std::size_t i = 0; i < image.rgb.size(); ++i) image.rgb[i] = static_cast<std::uint8_t>(i * 7 + i / 50);
+  for (std::size_t i = 0; i < image.rgb.size(); ++i)
+    image.rgb[i] = static_cast<std::uint8_t>(i * 7 + i / 50);
   write_png(folder_ / "still.png", image);
   const Decoded png(folder_ / "still.png");
   ASSERT_TRUE(png.ok());
@@ -84,7 +90,8 @@ TEST_F(ContactSheet, StillIsReadBackBitForBit) {
   for (int y = 0; y < 23; ++y)
     for (int x = 0; x < 37; ++x) {
       const std::uint8_t* p = image.pixel(x, y);
-      EXPECT_EQ(png.pixel(x, y), std::uint32_t{p[0]} << 16 | std::uint32_t{p[1]} << 8 | std::uint32_t{p[2]});
+      EXPECT_EQ(png.pixel(x, y),
+                std::uint32_t{p[0]} << 16 | std::uint32_t{p[1]} << 8 | std::uint32_t{p[2]});
     }
 }
 
@@ -103,8 +110,10 @@ TEST_F(ContactSheet, TilesStandWholeInRowsWithLabelsBelow) {
     EXPECT_EQ(p.right - p.left + 1, 240);
     EXPECT_EQ(p.top, patches[i / 3 * 3].top);
     EXPECT_EQ(p.left, patches[i % 3].left);
-    EXPECT_GT(ink_between(sheet, p.left, p.right, p.bottom + 1, p.bottom + 20), 30) << "label of tile " << i;
-    EXPECT_EQ(ink_between(sheet, p.right + 1, p.right + 6, p.top, p.bottom), 0) << "gap right of tile " << i;
+    EXPECT_GT(ink_between(sheet, p.left, p.right, p.bottom + 1, p.bottom + 20), 30)
+        << "label of tile " << i;
+    EXPECT_EQ(ink_between(sheet, p.right + 1, p.right + 6, p.top, p.bottom), 0)
+        << "gap right of tile " << i;
   }
   EXPECT_GT(patches[1].left, patches[0].right + 5);
   EXPECT_GT(patches[3].top, patches[0].bottom + 15);
@@ -113,8 +122,11 @@ TEST_F(ContactSheet, TilesStandWholeInRowsWithLabelsBelow) {
 }
 
 TEST_F(ContactSheet, LongTextIsShortenedInsideItsTile) {
-  const std::string long_label = "Überlange Beschriftung: μ = 0.3, k = 6000 N/m, 25 921 Knoten und noch viel mehr Text als Platz ist";
-  const std::vector<Tile> tiles{{plain(160, 90, 0xc01020), long_label}, {plain(160, 90, 0x10c020), ""}};
+  const std::string long_label =
+      "Überlange Beschriftung: μ = 0.3, k = 6000 N/m, 25 921 Knoten und noch viel mehr Text als "
+      "Platz ist";
+  const std::vector<Tile> tiles{{plain(160, 90, 0xc01020), long_label},
+                                {plain(160, 90, 0x10c020), ""}};
   write_contact_sheet(folder_ / "sheet.png", tiles, long_label + long_label, 2);
   const Decoded sheet(folder_ / "sheet.png");
   ASSERT_TRUE(sheet.ok());
@@ -137,7 +149,8 @@ TEST_F(ContactSheet, TilesOfDifferentSizesAreCentred) {
 TEST_F(ContactSheet, ColumnsAreChosenForFewGaps) {
   const std::vector<std::pair<int, int>> expected{{1, 1}, {2, 2}, {3, 3},  {4, 2},  {5, 3}, {6, 3},
                                                   {8, 4}, {9, 3}, {12, 4}, {16, 4}, {20, 5}};
-  for (const auto& [tiles, columns] : expected) EXPECT_EQ(contact_sheet_columns(tiles), columns) << tiles << " tiles";
+  for (const auto& [tiles, columns] : expected)
+    EXPECT_EQ(contact_sheet_columns(tiles), columns) << tiles << " tiles";
 }
 
 TEST_F(ContactSheet, BadInputLeavesTheOldFile) {

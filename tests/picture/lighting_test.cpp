@@ -7,7 +7,8 @@
 namespace taut::detail {
 namespace {
 
-// The light that a level point at the origin gives back without the key light, mean over 32 x 32 pixels of 16 samples.
+// The light that a level point at the origin gives back without the key light, mean over 32 x 32
+// pixels of 16 samples.
 double light_of_the_sky(std::span<const Surface> surfaces) {
   const RayScene scene(surfaces, Vec3::Zero());
   Lights lights;
@@ -40,7 +41,8 @@ Isometry at_height(double z) {
   return pose;
 }
 
-// The share of the sky, weighted by the cosine, that a sphere of radius r covers from a distance h right below it is (r/h)².
+// The share of the sky, weighted by the cosine, that a sphere of radius r covers from a distance h
+// right below it is (r/h)².
 TEST(Lighting, AmbientOcclusionUnderASphereIsTheFormFactor) {
   const SolidMesh ceiling = make_quad_mesh(1e4, 1e4, at_height(0.5));
   const Surface ceiling_surface = solid_surface(ceiling);
@@ -50,7 +52,8 @@ TEST(Lighting, AmbientOcclusionUnderASphereIsTheFormFactor) {
     const SolidMesh ball = make_sphere_mesh(radius, at_height(0.6));
     const Surface surface = solid_surface(ball);
     const double covered = (open - light_of_the_sky({&surface, 1})) / (open - closed);
-    EXPECT_NEAR(covered / (radius * radius / 0.36), 1.0, 0.03) << "radius " << radius;  // the sky is 3 % darker overhead
+    // the sky is 3 % darker overhead
+    EXPECT_NEAR(covered / (radius * radius / 0.36), 1.0, 0.03) << "radius " << radius;
   }
 }
 

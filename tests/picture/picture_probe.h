@@ -24,7 +24,8 @@ inline Vec3 colour_at(const Image& image, const Camera& camera, const Vec3& poin
   return sum / ((2 * reach + 1) * (2 * reach + 1));
 }
 
-inline double brightness_at(const Image& image, const Camera& camera, const Vec3& point, int reach = 1) {
+inline double brightness_at(const Image& image, const Camera& camera, const Vec3& point,
+                            int reach = 1) {
   return colour_at(image, camera, point, reach).mean();
 }
 

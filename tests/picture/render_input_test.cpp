@@ -34,12 +34,14 @@ TEST(RenderDeterminism, SameBitsForOneTwoAndFiveThreads) {
     images.push_back(render(surfaces, Camera{}, options));
   }
   set_thread_count(before);
-  for (std::size_t i = 1; i < images.size(); ++i) EXPECT_EQ(images[0].rgb, images[i].rgb) << "picture " << i;
+  for (std::size_t i = 1; i < images.size(); ++i)
+    EXPECT_EQ(images[0].rgb, images[i].rgb) << "picture " << i;
 }
 
 TEST(RenderInput, NothingToDrawGivesTheBackground) {
   const Surface empty;
-  const Image none = render({}, Camera{}, small_picture(20, 10)), one = render({&empty, 1}, Camera{}, small_picture(20, 10));
+  const Image none = render({}, Camera{}, small_picture(20, 10)),
+              one = render({&empty, 1}, Camera{}, small_picture(20, 10));
   EXPECT_EQ(none.rgb.size(), 600U);
   EXPECT_EQ(none.rgb, one.rgb);
   EXPECT_LT(none.pixel(3, 0)[0], none.pixel(3, 9)[0]);  // lighter downwards
@@ -51,7 +53,9 @@ TEST(RenderInput, TrianglesWithoutAreaDrawNothingAndSpoilNothing) {
   SolidMesh spoiled = ball;
   spoiled.mesh.triangles.push_back({5, 5, 5});
   spoiled.mesh.triangles.push_back({7, 8, 7});
-  spoiled.mesh.positions.insert(spoiled.mesh.positions.end(), {Vec3(-1, 0, 0), Vec3(0, 0, 1), Vec3(1, 0, 2)});  // on one line
+  // on one line
+  spoiled.mesh.positions.insert(spoiled.mesh.positions.end(),
+                                {Vec3(-1, 0, 0), Vec3(0, 0, 1), Vec3(1, 0, 2)});
   spoiled.normals.insert(spoiled.normals.end(), 3, Vec3::Zero());
   spoiled.mesh.texcoords.insert(spoiled.mesh.texcoords.end(), 3, Vec2::Zero());
   const auto last = static_cast<Index>(spoiled.mesh.positions.size());
@@ -60,12 +64,14 @@ TEST(RenderInput, TrianglesWithoutAreaDrawNothingAndSpoilNothing) {
     Surface a = clean, b = solid_surface(spoiled);
     a.normals = b.normals = {};
     a.smooth_normals = b.smooth_normals = smooth;
-    EXPECT_EQ(render({&a, 1}, Camera{}, small_picture()).rgb, render({&b, 1}, Camera{}, small_picture()).rgb);
+    EXPECT_EQ(render({&a, 1}, Camera{}, small_picture()).rgb,
+              render({&b, 1}, Camera{}, small_picture()).rgb);
   }
 }
 
 // The message of the InputError that drawing this throws; empty if none.
-std::string complaint(const Surface& surface, const Camera& camera = {}, const RenderOptions& options = small_picture(8, 8)) {
+std::string complaint(const Surface& surface, const Camera& camera = {},
+                      const RenderOptions& options = small_picture(8, 8)) {
   try {
     render({&surface, 1}, camera, options);
   } catch (const InputError& error) {
@@ -83,13 +89,16 @@ TEST(RenderInput, BadSurfacesAreRefusedByNameAndPlace) {
   };
   EXPECT_EQ(complaint(fresh()), "");
   ball.mesh.positions[17].y() = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_NE(complaint(fresh()).find("surface 'ball': vertex 17 is at ("), std::string::npos) << complaint(fresh());
+  EXPECT_NE(complaint(fresh()).find("surface 'ball': vertex 17 is at ("), std::string::npos)
+      << complaint(fresh());
   ball.mesh.positions[17].y() = 1e200;
   EXPECT_NE(complaint(fresh()).find("vertex 17"), std::string::npos);
   ball.mesh.positions[17].y() = 0;
   for (const Index wrong : {-1, static_cast<Index>(ball.mesh.positions.size())}) {
     const Index right = std::exchange(ball.mesh.triangles[3][1], wrong);
-    EXPECT_NE(complaint(fresh()).find("triangle 3 names vertex " + std::to_string(wrong)), std::string::npos) << complaint(fresh());
+    EXPECT_NE(complaint(fresh()).find("triangle 3 names vertex " + std::to_string(wrong)),
+              std::string::npos)
+        << complaint(fresh());
     ball.mesh.triangles[3][1] = right;
   }
   Surface surface = fresh();

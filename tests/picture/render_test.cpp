@@ -60,7 +60,8 @@ TEST(Render, KeyLightFollowsTheCosineLaw) {
   };
   const double sky_only = lit_from(from_below);
   const double upright = lit_from(Vec3::UnitZ()) - sky_only;
-  const double slanting = lit_from(Vec3(std::sqrt(3.0), 0, 1)) - sky_only;  // 30 degrees above the plane
+  // 30 degrees above the plane
+  const double slanting = lit_from(Vec3(std::sqrt(3.0), 0, 1)) - sky_only;
   EXPECT_GT(upright, 0.1);
   EXPECT_NEAR(slanting / upright, 0.5, 0.02);
 }
@@ -92,7 +93,8 @@ TEST(Render, EachSideOfTheClothShowsItsColour) {
   Surface cloth = surface_of(quad.mesh);
   cloth.front = Colour(0.1, 0.7, 0.1);
   cloth.back = Colour(0.1, 0.1, 0.7);
-  const Camera above{Vec3(0, -0.5, 3), Vec3::Zero(), Vec3::UnitZ(), 30.0}, below{Vec3(0, -0.5, -3), Vec3::Zero(), Vec3::UnitZ(), 30.0};
+  const Camera above{Vec3(0, -0.5, 3), Vec3::Zero(), Vec3::UnitZ(), 30.0},
+      below{Vec3(0, -0.5, -3), Vec3::Zero(), Vec3::UnitZ(), 30.0};
   const Vec3 front = colour_at(render({&cloth, 1}, above, small_picture()), above, Vec3::Zero());
   const Vec3 back = colour_at(render({&cloth, 1}, below, small_picture()), below, Vec3::Zero());
   EXPECT_GT(front.y(), 3 * front.z());
@@ -121,15 +123,19 @@ TEST(Render, CheckerFollowsTheTextureCoordinates) {
   cloth.pattern_cells = Vec2(4, 2);
   const Camera camera{Vec3(0, -0.01, 3), Vec3::Zero(), Vec3::UnitY(), 30.0};
   const Image image = render({&cloth, 1}, camera, small_picture(320, 240));
-  const auto cell = [&](int i, int j) { return brightness_at(image, camera, Vec3(-0.5 + (i + 0.5) / 4, -0.5 + (j + 0.5) / 2, 0)); };
+  const auto cell = [&](int i, int j) {
+    return brightness_at(image, camera, Vec3(-0.5 + (i + 0.5) / 4, -0.5 + (j + 0.5) / 2, 0));
+  };
   for (int j = 0; j < 2; ++j)
     for (int i = 0; i < 3; ++i) {
-      const double light = (i + j) % 2 == 0 ? cell(i, j) : cell(i + 1, j), dark = (i + j) % 2 == 0 ? cell(i + 1, j) : cell(i, j);
+      const double light = (i + j) % 2 == 0 ? cell(i, j) : cell(i + 1, j),
+                   dark = (i + j) % 2 == 0 ? cell(i + 1, j) : cell(i, j);
       EXPECT_NEAR(dark / light, 0.62, 0.04) << "cells " << i << ", " << j;
     }
 }
 
-// Vertex normals made from the triangles must shade a coarse ball nearly as its exact normals do; facets must not.
+// Vertex normals made from the triangles must shade a coarse ball nearly as its exact normals do;
+// facets must not.
 TEST(Render, SmoothNormalsAreThoseOfTheSurface) {
   const SolidMesh ball = make_sphere_mesh(0.5, Isometry::Identity(), 24);
   Surface exact = matt(ball, Colour::Constant(0.7)), smooth = exact, facets = exact;
@@ -137,7 +143,8 @@ TEST(Render, SmoothNormalsAreThoseOfTheSurface) {
   facets.smooth_normals = false;
   const Camera camera{Vec3(-3, 0.3, 2), Vec3::Zero(), Vec3::UnitZ(), 22.0};
   const auto difference = [&](const Surface& a, const Surface& b) {
-    const Image one = render({&a, 1}, camera, small_picture()), other = render({&b, 1}, camera, small_picture());
+    const Image one = render({&a, 1}, camera, small_picture()),
+                other = render({&b, 1}, camera, small_picture());
     double sum = 0;
     for (std::size_t i = 0; i < one.rgb.size(); ++i) sum += std::abs(one.rgb[i] - other.rgb[i]);
     return sum / static_cast<double>(one.rgb.size());
@@ -179,7 +186,8 @@ TEST(Render, FarFromTheOriginThePictureIsTheSame) {
   options.ground = far.z();
   const Image other = render({&cloth_there, 1}, camera, options);
   int differing = 0;
-  for (std::size_t i = 0; i < one.rgb.size(); ++i) differing += std::abs(one.rgb[i] - other.rgb[i]) > 8 ? 1 : 0;
+  for (std::size_t i = 0; i < one.rgb.size(); ++i)
+    differing += std::abs(one.rgb[i] - other.rgb[i]) > 8 ? 1 : 0;
   EXPECT_LT(differing, static_cast<int>(one.rgb.size() / 500));
 }
 

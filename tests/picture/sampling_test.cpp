@@ -20,7 +20,8 @@ void expect_net(const Points& points, int bits) {
       boxes.insert(static_cast<int>(p[0] * static_cast<float>(1 << across)) << (bits - across) |
                    static_cast<int>(p[1] * static_cast<float>(1 << (bits - across))));
     }
-    EXPECT_EQ(boxes.size(), points.size()) << "boxes of 1/" << (1 << across) << " x 1/" << (1 << (bits - across));
+    EXPECT_EQ(boxes.size(), points.size())
+        << "boxes of 1/" << (1 << across) << " x 1/" << (1 << (bits - across));
   }
 }
 
@@ -30,7 +31,8 @@ TEST(Sampling, PixelsAndSquaresOfPixelsAreNets) {
       Points points;
       for (std::uint32_t y = 0; y < size; ++y)
         for (std::uint32_t x = 0; x < size; ++x)
-          for (std::uint32_t i = 0; i < 16; ++i) points.push_back(PixelSamples(640 + x, 360 + y, 16, seed).at(i));
+          for (std::uint32_t i = 0; i < 16; ++i)
+            points.push_back(PixelSamples(640 + x, 360 + y, 16, seed).at(i));
       expect_net(points, 4 + 2 * (size / 2));
     }
   }

@@ -26,18 +26,21 @@ const Vec3& corner(const SolidMesh& s, std::size_t triangle, std::size_t k) {
 // By the divergence theorem: positive only if the triangles face outwards.
 double volume(const SolidMesh& s) {
   double sum = 0;
-  for (std::size_t t = 0; t < s.mesh.triangles.size(); ++t) sum += corner(s, t, 0).dot(corner(s, t, 1).cross(corner(s, t, 2))) / 6;
+  for (std::size_t t = 0; t < s.mesh.triangles.size(); ++t)
+    sum += corner(s, t, 0).dot(corner(s, t, 1).cross(corner(s, t, 2))) / 6;
   return sum;
 }
 
 double area(const SolidMesh& s) {
   double sum = 0;
   for (std::size_t t = 0; t < s.mesh.triangles.size(); ++t)
-    sum += 0.5 * (corner(s, t, 1) - corner(s, t, 0)).cross(corner(s, t, 2) - corner(s, t, 0)).norm();
+    sum +=
+        0.5 * (corner(s, t, 1) - corner(s, t, 0)).cross(corner(s, t, 2) - corner(s, t, 0)).norm();
   return sum;
 }
 
-// Unit normals within 10 degrees of the triangle they belong to, texture coordinates in the unit square.
+// Unit normals within 10 degrees of the triangle they belong to, texture coordinates in the unit
+// square.
 void expect_sound(const SolidMesh& s) {
   ASSERT_EQ(s.normals.size(), s.mesh.positions.size());
   ASSERT_EQ(s.mesh.texcoords.size(), s.mesh.positions.size());
@@ -54,7 +57,8 @@ void expect_sound(const SolidMesh& s) {
 }
 
 TEST(SolidMesh, ClosedSolidsHaveTheirVolumeAndArea) {
-  const SolidMesh sphere = make_sphere_mesh(0.3, some_pose()), cylinder = make_cylinder_mesh(0.3, 0.8, some_pose());
+  const SolidMesh sphere = make_sphere_mesh(0.3, some_pose()),
+                  cylinder = make_cylinder_mesh(0.3, 0.8, some_pose());
   const SolidMesh box = make_box_mesh(Vec3(0.2, 0.5, 1.5), some_pose());
   EXPECT_NEAR(volume(sphere) / (4.0 / 3.0 * pi * 0.027), 1, 3e-3);
   EXPECT_NEAR(area(sphere) / (4 * pi * 0.09), 1, 3e-3);
@@ -71,7 +75,8 @@ TEST(SolidMesh, PlanePiecesFaceUpInTheirOwnFrame) {
   EXPECT_NEAR(area(quad), 6, 1e-12);
   for (const SolidMesh* s : {&disc, &quad}) {
     expect_sound(*s);
-    for (const Vec3& n : s->normals) EXPECT_TRUE(n.isApprox(some_pose().linear() * Vec3::UnitZ(), 1e-12));
+    for (const Vec3& n : s->normals)
+      EXPECT_TRUE(n.isApprox(some_pose().linear() * Vec3::UnitZ(), 1e-12));
     for (const Vec3& p : s->mesh.positions) EXPECT_NEAR((some_pose().inverse() * p).z(), 0, 1e-12);
   }
 }

@@ -26,7 +26,8 @@ Checkpoint sample() {
   c.state.last = {Vec3(22, 23, 24), Vec3(25, 26, 27)};
   c.contacts.node = {1}, c.contacts.solid = {2};
   c.contacts.sticking = {ContactStick{.sticks = 1, .wait = 5, .longest_wait = 6}};
-  c.contacts.normal_force = {ContactForce{.normal = 3.5, .friction = {1, 2, 3}, .inverse_mass = 4.25}};
+  c.contacts.normal_force = {
+      ContactForce{.normal = 3.5, .friction = {1, 2, 3}, .inverse_mass = 4.25}};
   c.solver_memory = {1.5, -0.0, 7e-300};
   c.surface_contact = {{{3, 8}, {0, 1}}, {{{1, 2, 3, 4}, {0.5f, -0.0f, 1e-30f}}}};
   return c;
@@ -55,7 +56,8 @@ TEST(Checkpoint, ComesBackWhole) {
   EXPECT_EQ(again.frame, 45);
   EXPECT_EQ(again.state.time, c.state.time);
   EXPECT_TRUE(again.state.has_previous);
-  EXPECT_TRUE(again.state.x == c.state.x && again.state.v == c.state.v && again.state.x_prev == c.state.x_prev);
+  EXPECT_TRUE(again.state.x == c.state.x && again.state.v == c.state.v &&
+              again.state.x_prev == c.state.x_prev);
   EXPECT_TRUE(again.state.v_prev == c.state.v_prev && again.state.last == c.state.last);
   EXPECT_TRUE(again.contacts == c.contacts);
   EXPECT_EQ(again.solver_memory, c.solver_memory);
@@ -65,7 +67,8 @@ TEST(Checkpoint, ComesBackWhole) {
 
 TEST(Checkpoint, EmptyListsComeBackEmpty) {
   const Checkpoint again = parse_checkpoint(bytes_of(Checkpoint{}), "state.bin");
-  EXPECT_TRUE(again.state.x.empty() && again.state.last.empty() && again.contacts.node.empty() && again.scene.empty());
+  EXPECT_TRUE(again.state.x.empty() && again.state.last.empty() && again.contacts.node.empty() &&
+              again.scene.empty());
   EXPECT_FALSE(again.state.has_previous);
 }
 
@@ -73,7 +76,8 @@ TEST(Checkpoint, AnyTruncationIsRefused) {
   const std::string bytes = bytes_of(sample());
   for (std::size_t length = 0; length < bytes.size(); ++length) {
     const std::string text = refusal(bytes.substr(0, length));
-    ASSERT_TRUE(text.starts_with("run/checkpoint/state.bin: is damaged")) << length << " bytes: " << text;
+    ASSERT_TRUE(text.starts_with("run/checkpoint/state.bin: is damaged"))
+        << length << " bytes: " << text;
   }
   EXPECT_NE(refusal(bytes + "x"), "not refused");
 }
@@ -88,13 +92,17 @@ TEST(Checkpoint, AnyFlippedBitIsRefused) {
     }
 }
 
-// A count that promises more than the file holds must not be believed, even with a right checksum: that is how memory is exhausted.
+// A count that promises more than the file holds must not be believed, even with a right checksum:
+// that is how memory is exhausted.
 TEST(Checkpoint, ImpossibleCountsAreRefused) {
-  for (const std::uint64_t count : {std::uint64_t{1000}, std::uint64_t{1} << 40, ~std::uint64_t{0}, ~std::uint64_t{0} / 24 + 2}) {
+  for (const std::uint64_t count : {std::uint64_t{1000}, std::uint64_t{1} << 40, ~std::uint64_t{0},
+                                    ~std::uint64_t{0} / 24 + 2}) {
     std::string bytes = bytes_of(sample());
-    bytes.replace(8, 8, reinterpret_cast<const char*>(&count), 8);  // the length of the scene's text
-    std::uint64_t hash = 0xcbf29ce484222325ull;                     // FNV-1a, as the header says
-    for (std::size_t i = 0; i + 8 < bytes.size(); ++i) hash = (hash ^ static_cast<unsigned char>(bytes[i])) * 0x100000001b3ull;
+    // the length of the scene's text
+    bytes.replace(8, 8, reinterpret_cast<const char*>(&count), 8);
+    std::uint64_t hash = 0xcbf29ce484222325ull;  // FNV-1a, as the header says
+    for (std::size_t i = 0; i + 8 < bytes.size(); ++i)
+      hash = (hash ^ static_cast<unsigned char>(bytes[i])) * 0x100000001b3ull;
     bytes.replace(bytes.size() - 8, 8, reinterpret_cast<const char*>(&hash), 8);
     EXPECT_TRUE(refusal(bytes).starts_with("run/checkpoint/state.bin: is damaged")) << count;
   }

@@ -1,5 +1,5 @@
-// Short forms of the contact scenes: every few steps another library (CGAL) judges whether anything intersects, and contact must really
-// have happened.
+// Short forms of the contact scenes: every few steps another library (CGAL) judges whether anything
+// intersects, and contact must really have happened.
 
 #include <gtest/gtest.h>
 
@@ -65,7 +65,8 @@ const ShortForm short_forms[] = {
     {"twist", {"cloth.tube.nodes=[24,24]"}, 300, 10, 100, 0.05},
     {"tshirt_cylinder", {"cloth.1.grid.nodes=[15,15]"}, 60, 10, 100, 0.05},
 };
-INSTANTIATE_TEST_SUITE_P(Shipped, ContactScene, testing::ValuesIn(short_forms), [](const auto& form) { return form.param.scene; });
+INSTANTIATE_TEST_SUITE_P(Shipped, ContactScene, testing::ValuesIn(short_forms),
+                         [](const auto& form) { return form.param.scene; });
 
 struct End {
   State state;
@@ -100,14 +101,16 @@ TEST(ContactSimulation, ResumesToTheSameBitsInTheMidstOfZones) {
   Simulation simulation(scene);
   StepRecord record;
   int steps = 0;
-  while (simulation.surface_contact()->state().zones.node.empty() && ++steps < 300) ASSERT_TRUE(simulation.step(record).ok());
+  while (simulation.surface_contact()->state().zones.node.empty() && ++steps < 300)
+    ASSERT_TRUE(simulation.step(record).ok());
   ASSERT_LT(steps, 300) << "no zone was ever kept";
   EXPECT_GT(record.zone_nodes, 0);
   Simulation resumed(scene);
-  resumed.restore(simulation.state(), simulation.contact().state(), simulation.steps_done(), simulation.stepper().solver().memory(),
-                  simulation.surface_contact()->state());
+  resumed.restore(simulation.state(), simulation.contact().state(), simulation.steps_done(),
+                  simulation.stepper().solver().memory(), simulation.surface_contact()->state());
   Simulation forgetful(scene);
-  forgetful.restore(simulation.state(), simulation.contact().state(), simulation.steps_done(), simulation.stepper().solver().memory());
+  forgetful.restore(simulation.state(), simulation.contact().state(), simulation.steps_done(),
+                    simulation.stepper().solver().memory());
   bool zones_matter = false;
   for (int k = 0; k < 5; ++k) {
     ASSERT_TRUE(simulation.step(record).ok());
@@ -130,20 +133,24 @@ TEST(ContactSimulation, ResumesToTheSameBitsInAHeap) {
   ASSERT_GT(contact.forces.size(), 100u);
   const auto solver_memory = simulation.stepper().solver().memory();
   Simulation resumed(scene), forgetful(scene);
-  resumed.restore(simulation.state(), simulation.contact().state(), simulation.steps_done(), solver_memory, contact);
-  forgetful.restore(simulation.state(), simulation.contact().state(), simulation.steps_done(), solver_memory, {contact.zones, {}});
+  resumed.restore(simulation.state(), simulation.contact().state(), simulation.steps_done(),
+                  solver_memory, contact);
+  forgetful.restore(simulation.state(), simulation.contact().state(), simulation.steps_done(),
+                    solver_memory, {contact.zones, {}});
   for (Simulation* s : {&simulation, &resumed, &forgetful}) ASSERT_TRUE(s->step(record).ok());
   EXPECT_EQ(resumed.state().x, simulation.state().x);
   EXPECT_EQ(resumed.state().v, simulation.state().v);
   EXPECT_EQ(resumed.surface_contact()->state(), simulation.surface_contact()->state());
-  EXPECT_NE(forgetful.state().x, simulation.state().x) << "the test would not have noticed that forces were lost";
+  EXPECT_NE(forgetful.state().x, simulation.state().x)
+      << "the test would not have noticed that forces were lost";
 }
 
 TEST(ContactSimulation, NodesOfZonesAreEliminatedInTheNextStep) {
   Simulation simulation(shipped("clump", zones_only));
   StepRecord record;
   int steps = 0;
-  while (simulation.surface_contact()->state().zones.node.empty() && ++steps < 300) ASSERT_TRUE(simulation.step(record).ok());
+  while (simulation.surface_contact()->state().zones.node.empty() && ++steps < 300)
+    ASSERT_TRUE(simulation.step(record).ok());
   ASSERT_LT(steps, 300);
   const std::vector<Index> held = simulation.surface_contact()->state().zones.node;
   int eliminated = -1;
@@ -154,7 +161,8 @@ TEST(ContactSimulation, NodesOfZonesAreEliminatedInTheNextStep) {
   ASSERT_TRUE(simulation.step(record).ok());
   EXPECT_EQ(eliminated, static_cast<int>(held.size()));
   for (const Index node : held)
-    EXPECT_EQ(std::ranges::count(simulation.surface_contact()->state().zones.node, node), 0) << "held twice in a row";
+    EXPECT_EQ(std::ranges::count(simulation.surface_contact()->state().zones.node, node), 0)
+        << "held twice in a row";
 }
 
 const std::string thrown = R"(
@@ -192,7 +200,8 @@ Momentum momentum(std::span<const double> mass, std::span<const Vec3> x, std::sp
   return m;
 }
 
-// Two sheets thrown at each other where there is nothing else: whatever the response does in a step, it neither pushes nor turns the whole.
+// Two sheets thrown at each other where there is nothing else: whatever the response does in a
+// step, it neither pushes nor turns the whole.
 TEST(ContactSimulation, ResponseKeepsTheMomentumOfAnIsolatedClump) {
   Simulation simulation(read_scene_text(thrown, "/scenes/test.toml", {}));
   const auto mass = simulation.cloth().external().masses();
@@ -211,11 +220,15 @@ TEST(ContactSimulation, ResponseKeepsTheMomentumOfAnIsolatedClump) {
     const State& end = simulation.state();
     steps_moved += end.x != x_solved;
     const double h = simulation.scene().time.step;
-    for (std::size_t i = 0; i < x0.size(); ++i) ASSERT_LT((x0[i] + h * end.v[i] - end.x[i]).norm(), 1e-13);
-    const Momentum before = momentum(mass, x0, v_solved), after = momentum(mass, x0, end.v), at_end = momentum(mass, end.x, end.v);
+    for (std::size_t i = 0; i < x0.size(); ++i)
+      ASSERT_LT((x0[i] + h * end.v[i] - end.x[i]).norm(), 1e-13);
+    const Momentum before = momentum(mass, x0, v_solved), after = momentum(mass, x0, end.v),
+                   at_end = momentum(mass, end.x, end.v);
     EXPECT_LE((after.linear - before.linear).norm(), 1e-10 * before.linear_scale) << "step " << k;
-    EXPECT_LE((after.angular - before.angular).norm(), 1e-10 * before.angular_scale) << "step " << k;
-    EXPECT_LE((at_end.angular - before.angular).norm(), 1e-10 * before.angular_scale) << "about the new positions, step " << k;
+    EXPECT_LE((after.angular - before.angular).norm(), 1e-10 * before.angular_scale)
+        << "step " << k;
+    EXPECT_LE((at_end.angular - before.angular).norm(), 1e-10 * before.angular_scale)
+        << "about the new positions, step " << k;
   }
   EXPECT_GT(impacts, 100);
   EXPECT_GT(steps_moved, 10);
@@ -237,7 +250,8 @@ TEST(ContactSimulation, ResponseKeepsMomentumWhateverTheVelocityAtTheEnd) {
   std::vector<Vec3> x = x_end, v = v_end;
   bool changed = false;
   SurfaceContact& contact = *simulation.surface_contact();
-  const Status status = contact.correct(0.0, h, start.x, v_end, pins, simulation.contact(), x, changed);
+  const Status status =
+      contact.correct(0.0, h, start.x, v_end, pins, simulation.contact(), x, changed);
   ASSERT_TRUE(status.ok()) << status.message;
   ASSERT_TRUE(changed);
   ASSERT_EQ(contact.counts().zones, 0);
@@ -266,15 +280,19 @@ TEST(ContactSimulation, AStartWithIntersectionsIsRefusedWithTheirPlaces) {
     FAIL() << "not refused";
   } catch (const InputError& error) {
     const std::string text = error.what();
-    for (const char* part : {"cloth 'flat'", "cloth 'upright'", "the triangle", "contact.allow_intersections"})
+    for (const char* part :
+         {"cloth 'flat'", "cloth 'upright'", "the triangle", "contact.allow_intersections"})
       EXPECT_NE(text.find(part), std::string::npos) << text;
   }
-  Simulation allowed(read_scene_text(crossed, "/scenes/test.toml", std::vector<std::string>{"contact.allow_intersections=true"}));
-  Simulation without(read_scene_text(crossed, "/scenes/test.toml", std::vector<std::string>{"contact.self=false"}));
+  Simulation allowed(read_scene_text(crossed, "/scenes/test.toml",
+                                     std::vector<std::string>{"contact.allow_intersections=true"}));
+  Simulation without(read_scene_text(crossed, "/scenes/test.toml",
+                                     std::vector<std::string>{"contact.self=false"}));
   EXPECT_EQ(without.surface_contact(), nullptr);
 }
 
-// Two plates press a sheet flat: there is no way out, and the run must say so and keep the last good state.
+// Two plates press a sheet flat: there is no way out, and the run must say so and keep the last
+// good state.
 TEST(ContactSimulation, StopsWhereClothIsCrushedAndNamesThePlace) {
   Scene scene = shipped("pinch", {"cloth.grid.nodes=[13,13]", "contact.thickness=1e-3"});
   for (Solid& solid : scene.solids) {

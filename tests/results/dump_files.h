@@ -1,6 +1,6 @@
 #pragma once
-// A dump read back as dense matrices, and the cloth's forces worked out anew from springs.csv alone: code of the test's own, from the
-// formulas.
+// A dump read back as dense matrices, and the cloth's forces worked out anew from springs.csv
+// alone: code of the test's own, from the formulas.
 
 #include <gtest/gtest.h>
 
@@ -31,7 +31,8 @@ inline Matrix read_dense(const std::filesystem::path& path) {
 inline Vector read_dense_vector(const std::filesystem::path& path) {
   const MatrixMarket file = read_matrix_market(path);
   EXPECT_TRUE(file.dense && file.columns == 1) << path;
-  return Eigen::Map<const Vector>(file.values.data(), static_cast<Eigen::Index>(file.values.size()));
+  return Eigen::Map<const Vector>(file.values.data(),
+                                  static_cast<Eigen::Index>(file.values.size()));
 }
 
 struct SpringRow {
@@ -53,7 +54,8 @@ inline std::vector<SpringRow> read_springs(const std::filesystem::path& path) {
     std::istringstream fields(line);
     std::string field[7];
     for (std::string& f : field) std::getline(fields, f, ',');
-    springs.push_back({std::stoi(field[0]), std::stoi(field[1]), field[2], std::stod(field[3]), std::stod(field[4]), std::stod(field[5]),
+    springs.push_back({std::stoi(field[0]), std::stoi(field[1]), field[2], std::stod(field[3]),
+                       std::stod(field[4]), std::stod(field[5]),
                        !tells_implicit || field[6] == "1"});
   }
   return springs;
@@ -65,13 +67,18 @@ struct DumpFiles {
     meta = nlohmann::json::parse(in);
     a = matrix("A"), a_core = matrix("A_core"), s = matrix("S"), u = matrix("U");
     d_external = has("D_external") ? matrix("D_external") : Matrix::Zero(a.rows(), a.rows());
-    m = vector("M"), b = vector("b"), z = vector("z"), x = vector("x"), v = vector("v"), f_start = vector("f"), dv = vector("dv");
+    m = vector("M"), b = vector("b"), z = vector("z"), x = vector("x"), v = vector("v"),
+    f_start = vector("f"), dv = vector("dv");
     friction = has("friction") ? vector("friction") : Vector::Zero(a.rows());
     springs = read_springs(folder / "springs.csv");
   }
-  bool has(const std::string& name) const { return std::filesystem::exists(folder / (name + ".mtx")); }
+  bool has(const std::string& name) const {
+    return std::filesystem::exists(folder / (name + ".mtx"));
+  }
   Matrix matrix(const std::string& name) const { return read_dense(folder / (name + ".mtx")); }
-  Vector vector(const std::string& name) const { return read_dense_vector(folder / (name + ".mtx")); }
+  Vector vector(const std::string& name) const {
+    return read_dense_vector(folder / (name + ".mtx"));
+  }
 
   std::filesystem::path folder;
   nlohmann::json meta;
@@ -85,7 +92,8 @@ struct Tension {
   bool slack = true;
 };
 
-// Choi & Ko 2002, type 2: bisection for u, a difference quotient for the slope, in extended precision.
+// Choi & Ko 2002, type 2: bisection for u, a difference quotient for the slope, in extended
+// precision.
 inline long double buckled_force(double k, double l0, long double length) {
   long double low = 0.0L, high = 3.14159265358979323846L;
   for (int n = 0; n < 80; ++n) {
@@ -104,21 +112,24 @@ inline Tension tension_of(const SpringRow& s, double length, const nlohmann::jso
     const long double beam = buckled_force(s.stiffness, s.rest_length, length);
     if (beam < cap * stretch) return {cap * stretch, cap, false};
     const long double step = 1e-6L * s.rest_length;
-    const long double slope =
-        (buckled_force(s.stiffness, s.rest_length, length + step) - buckled_force(s.stiffness, s.rest_length, length - step)) / (2 * step);
+    const long double slope = (buckled_force(s.stiffness, s.rest_length, length + step) -
+                               buckled_force(s.stiffness, s.rest_length, length - step)) /
+                              (2 * step);
     return {static_cast<double>(beam), static_cast<double>(slope), false};
   }
   if (stretch < 0.0 && s.force_class != "bend" && meta.at("compression") == "none") return {};
   return {s.stiffness * stretch, s.stiffness, false};
 }
 
-// K, D and force of the springs of one class at the dumped state; docs/mathematics.md, 2: K_s = T' e eᵀ + max(T/L, 0) (I - e eᵀ), D_s = k_d e eᵀ.
+// K, D and force of the springs of one class at the dumped state; docs/mathematics.md, 2: K_s = T'
+// e eᵀ + max(T/L, 0) (I - e eᵀ), D_s = k_d e eᵀ.
 struct SpringSums {
   Matrix k, d;
   Vector f;
 };
 
-inline SpringSums sum_springs(const DumpFiles& dump, const std::string& force_class, bool implicit_only = false) {
+inline SpringSums sum_springs(const DumpFiles& dump, const std::string& force_class,
+                              bool implicit_only = false) {
   const Eigen::Index n = dump.x.size();
   SpringSums sums{Matrix::Zero(n, n), Matrix::Zero(n, n), Vector::Zero(n)};
   const auto add = [](Matrix& to, int i, int j, const Mat3& block) {
@@ -127,13 +138,15 @@ inline SpringSums sum_springs(const DumpFiles& dump, const std::string& force_cl
   };
   for (const SpringRow& s : dump.springs) {
     if (s.force_class != force_class || (implicit_only && !s.implicit)) continue;
-    const Vec3 d = dump.x.segment<3>(3 * s.j) - dump.x.segment<3>(3 * s.i), w = dump.v.segment<3>(3 * s.j) - dump.v.segment<3>(3 * s.i);
+    const Vec3 d = dump.x.segment<3>(3 * s.j) - dump.x.segment<3>(3 * s.i),
+               w = dump.v.segment<3>(3 * s.j) - dump.v.segment<3>(3 * s.i);
     const double length = d.norm();
     const Tension t = tension_of(s, length, dump.meta);
     if (t.slack) continue;
     const Vec3 e = d / length;
     const Mat3 along = e * e.transpose();
-    add(sums.k, s.i, s.j, t.slope * along + std::max(t.force / length, 0.0) * (Mat3::Identity() - along));
+    add(sums.k, s.i, s.j,
+        t.slope * along + std::max(t.force / length, 0.0) * (Mat3::Identity() - along));
     add(sums.d, s.i, s.j, s.damping * along);
     const Vec3 force = (t.force + s.damping * e.dot(w)) * e;
     sums.f.segment<3>(3 * s.i) += force, sums.f.segment<3>(3 * s.j) -= force;

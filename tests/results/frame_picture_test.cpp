@@ -39,7 +39,10 @@ velocity = [1000, 0, 0]
 // The scene's cloth at rest, with a wave in it, as the frames of a result.
 class PictureOfAResult : public ::testing::Test {
  protected:
-  PictureOfAResult() : results_(folder()), scene_(read_scene_text(scene_text, folder() / "scene.toml")), simulation_(scene_) {
+  PictureOfAResult()
+      : results_(folder()),
+        scene_(read_scene_text(scene_text, folder() / "scene.toml")),
+        simulation_(scene_) {
     results_.start(simulation_);
     for (int frame = 0; frame <= 4; ++frame) {
       std::vector<Vec3> x = simulation_.cloth().start().x;
@@ -51,14 +54,17 @@ class PictureOfAResult : public ::testing::Test {
     std::error_code failure;
     fs::remove_all(folder(), failure);
   }
-  static fs::path folder() { return fs::temp_directory_path() / ("taut_picture_" + std::to_string(::getpid())); }
+  static fs::path folder() {
+    return fs::temp_directory_path() / ("taut_picture_" + std::to_string(::getpid()));
+  }
 
   Image draw(int frame, PictureOptions options = {}) const {
     options.samples = 4;
     options.width = 160;
     options.height = 120;
     const std::vector<int> frames{0, 1, 2, 3, 4};
-    return FramePictures(simulation_.scene(), simulation_.cloth(), results_, frames, options).draw(frame);
+    return FramePictures(simulation_.scene(), simulation_.cloth(), results_, frames, options)
+        .draw(frame);
   }
 
   ResultsFolder results_;
@@ -69,7 +75,8 @@ class PictureOfAResult : public ::testing::Test {
 double share(const Image& image, const std::function<bool(int r, int g, int b)>& holds) {
   int count = 0;
   for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x) count += holds(image.pixel(x, y)[0], image.pixel(x, y)[1], image.pixel(x, y)[2]);
+    for (int x = 0; x < image.width; ++x)
+      count += holds(image.pixel(x, y)[0], image.pixel(x, y)[1], image.pixel(x, y)[2]);
   return static_cast<double>(count) / (image.width * image.height);
 }
 
@@ -80,26 +87,34 @@ TEST_F(PictureOfAResult, ClothBallAndGroundAreSeenWithoutBlackOrClipping) {
   const Image image = draw(4);
   EXPECT_GT(share(image, is_blue), 0.07);
   EXPECT_LT(share(image, is_blue), 0.8);
-  EXPECT_EQ(share(image, [](int r, int g, int b) { return std::max({r, g, b}) < 12; }), 0.0) << "black";
-  EXPECT_LT(share(image, [](int r, int g, int b) { return std::min({r, g, b}) >= 254; }), 0.002) << "clipped";
+  EXPECT_EQ(share(image, [](int r, int g, int b) { return std::max({r, g, b}) < 12; }), 0.0)
+      << "black";
+  EXPECT_LT(share(image, [](int r, int g, int b) { return std::min({r, g, b}) >= 254; }), 0.002)
+      << "clipped";
   // The ground's shadow: grey, and much darker than the ground around.
   EXPECT_GT(share(image, [](int r, int g, int b) { return is_grey(r, g, b) && g < 170; }), 0.02);
   PictureOptions without;
   without.ground = false;
-  EXPECT_LT(share(draw(4, without), [](int r, int g, int b) { return is_grey(r, g, b) && g < 120; }), 0.02);
+  EXPECT_LT(
+      share(draw(4, without), [](int r, int g, int b) { return is_grey(r, g, b) && g < 120; }),
+      0.02);
 }
 
 // The far ball would make the cloth a dot.
-TEST_F(PictureOfAResult, AMovingSolidDoesNotTakeTheCameraAway) { EXPECT_GT(share(draw(0), is_blue), 0.05); }
+TEST_F(PictureOfAResult, AMovingSolidDoesNotTakeTheCameraAway) {
+  EXPECT_GT(share(draw(0), is_blue), 0.05);
+}
 
-// Without a plane the ground must hide no solid: a box too large to belong into the view, and a body whose feet end just below zero.
+// Without a plane the ground must hide no solid: a box too large to belong into the view, and a
+// body whose feet end just below zero.
 TEST_F(PictureOfAResult, TheGroundHidesNoSolid) {
   struct Case {
     const char* solid;
     double ground;
   };
   for (const auto& [solid, ground] :
-       {Case{"translation = [0, 0, 0.4]\nsize = [3, 3, 0.8]\n", 0.0}, Case{"translation = [0, 0, 0.3994]\nsize = [3, 3, 0.8]\n", -6e-4}}) {
+       {Case{"translation = [0, 0, 0.4]\nsize = [3, 3, 0.8]\n", 0.0},
+        Case{"translation = [0, 0, 0.3994]\nsize = [3, 3, 0.8]\n", -6e-4}}) {
     const std::string text = std::string(scene_text) + "[[solid]]\nshape = \"box\"\n" + solid;
     const Scene scene = read_scene_text(text, folder() / "scene.toml");
     const std::vector<int> frames{0, 4};
@@ -110,7 +125,8 @@ TEST_F(PictureOfAResult, TheGroundHidesNoSolid) {
 }
 
 TEST_F(PictureOfAResult, FoldsAreReadable) {
-  // A wave makes light and shade: neighbouring cloth pixels span more brightness than on the flat sheet.
+  // A wave makes light and shade: neighbouring cloth pixels span more brightness than on the flat
+  // sheet.
   PictureOptions plain;
   plain.pattern = Pattern::none;
   const auto spread = [&](const Image& image) {

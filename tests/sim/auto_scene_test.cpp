@@ -1,4 +1,5 @@
-// `solver.name = "auto"` in scenes: every regime of step size and stiffness is solved, to the accuracy asked for, within the core's bound.
+// `solver.name = "auto"` in scenes: every regime of step size and stiffness is solved, to the
+// accuracy asked for, within the core's bound.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -33,14 +34,18 @@ TEST(AutoScene, SolvesEveryRegime) {
   constexpr double tolerance = 1e-4;
   int contacts = 0, with_bound = 0;
   for (const double h : {1e-3, 3.67e-3, 16.7e-3, 33e-3})
-    for (const auto& [k_shear, k_bend] : {std::pair{0.3, 0.05}, std::pair{30.0, 5.0}, std::pair{600.0, 50.0}})
+    for (const auto& [k_shear, k_bend] :
+         {std::pair{0.3, 0.05}, std::pair{30.0, 5.0}, std::pair{600.0, 50.0}})
       for (const double k_stretch : {60.0, 6e3, 6e6}) {
-        const std::string setting = fmt::format("h {}, shear {}, stretch {}", h, k_shear, k_stretch);
+        const std::string setting =
+            fmt::format("h {}, shear {}, stretch {}", h, k_shear, k_stretch);
         SCOPED_TRACE(setting);
         const Scene scene = read_scene_text(
             ball, "/scenes/test.toml",
-            std::vector<std::string>{fmt::format("time.step={}", h), "time.max_halvings=0", fmt::format("cloth.k_shear={}", k_shear),
-                                     fmt::format("cloth.k_bend={}", k_bend), fmt::format("cloth.k_stretch={}", k_stretch),
+            std::vector<std::string>{fmt::format("time.step={}", h), "time.max_halvings=0",
+                                     fmt::format("cloth.k_shear={}", k_shear),
+                                     fmt::format("cloth.k_bend={}", k_bend),
+                                     fmt::format("cloth.k_stretch={}", k_stretch),
                                      fmt::format("solver.tolerance={}", tolerance)});
         EXPECT_EQ(scene.solver.name, "auto") << "the default";
         Simulation simulation(scene);
@@ -55,11 +60,13 @@ TEST(AutoScene, SolvesEveryRegime) {
           const Status status = simulation.step(record);
           ASSERT_TRUE(status.ok()) << status.message;
           EXPECT_LT(error, 10.0 * tolerance) << record.solver << ", step " << step;
-          // The residual's own norm can be larger than the error's by sqrt(cond(A)), and is where rounded springs pull across: a twentieth of that
-          // is seen.
-          const double most_residual = tolerance * std::max(100.0, 0.1 * std::sqrt(solved_stiffness));
+          // The residual's own norm can be larger than the error's by sqrt(cond(A)), and is where
+          // rounded springs pull across: a twentieth of that is seen.
+          const double most_residual =
+              tolerance * std::max(100.0, 0.1 * std::sqrt(solved_stiffness));
           EXPECT_LT(record.relative_residual, most_residual) << record.solver << ", step " << step;
-          if (record.solver.starts_with("core") && (record.contact_passes == 1 || record.bound_iterations >= 0)) {
+          if (record.solver.starts_with("core") &&
+              (record.contact_passes == 1 || record.bound_iterations >= 0)) {
             EXPECT_LE(record.iterations, record.bound_iterations);
             if (h > 1e-3 || k_stretch > 60.0) {
               EXPECT_GT(record.core_springs, 0);
@@ -78,8 +85,9 @@ TEST(AutoScene, SolvesEveryRegime) {
 
 TEST(AutoScene, TheCoreIsASettingOfItsOwn) {
   const auto springs = [](const char* setting) {
-    Simulation simulation(
-        read_scene_text(ball, "/scenes/test.toml", std::vector<std::string>{"solver.name=core_pcg:block", "cloth.k_shear=300", setting}));
+    Simulation simulation(read_scene_text(
+        ball, "/scenes/test.toml",
+        std::vector<std::string>{"solver.name=core_pcg:block", "cloth.k_shear=300", setting}));
     StepRecord record;
     EXPECT_TRUE(simulation.step(record).ok());
     EXPECT_LE(record.iterations, record.bound_iterations);

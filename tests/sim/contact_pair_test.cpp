@@ -1,4 +1,5 @@
-// contact.pair: two cloths on one slope, and cloth on cloth, with friction and thickness of their own; and what is refused.
+// contact.pair: two cloths on one slope, and cloth on cloth, with friction and thickness of their
+// own; and what is refused.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -59,7 +60,9 @@ Means run(const std::string& toml, int steps) {
   return {end.left - start.left, end.right - start.right};
 }
 
-double slid(double mu, double t) { return 0.5 * g * (slope - mu) / std::sqrt(1 + slope * slope) * t * t; }
+double slid(double mu, double t) {
+  return 0.5 * g * (slope - mu) / std::sqrt(1 + slope * slope) * t * t;
+}
 
 TEST(ContactPair, TwoClothsOnOneSlopeSlideEachWithItsOwnFriction) {
   const std::string ground = R"(
@@ -71,7 +74,10 @@ friction = 0.6
   const Means without = run(two_sheets(0.0, ground), 150);
   EXPECT_NEAR(without.left.x(), 0.0, 1e-4);
   EXPECT_NEAR(without.right.x(), 0.0, 1e-4);
-  const Means with = run(two_sheets(0.0, ground + "[[contact.pair]]\ncloth = \"right\"\nwith = \"ground\"\nfriction = 0.1\n"), 150);
+  const Means with = run(
+      two_sheets(
+          0.0, ground + "[[contact.pair]]\ncloth = \"right\"\nwith = \"ground\"\nfriction = 0.1\n"),
+      150);
   EXPECT_NEAR(with.left.x(), 0.0, 1e-4);
   EXPECT_NEAR(with.right.x(), slid(0.1, 0.3), 0.03 * slid(0.1, 0.3));
 }
@@ -125,20 +131,28 @@ TEST(ContactPair, NamesThatAreNotThereAndPairsThatSayNothingAreRefused) {
     }
     return "accepted";
   };
-  EXPECT_NE(message("[[contact.pair]]\ncloth = \"lefd\"\nwith = \"right\"\nfriction = 0.1\n").find("no cloth named 'lefd'"),
+  EXPECT_NE(message("[[contact.pair]]\ncloth = \"lefd\"\nwith = \"right\"\nfriction = 0.1\n")
+                .find("no cloth named 'lefd'"),
             std::string::npos);
-  EXPECT_NE(message("[[contact.pair]]\ncloth = \"left\"\nwith = \"floor\"\nfriction = 0.1\n").find("no cloth or solid named 'floor'"),
+  EXPECT_NE(message("[[contact.pair]]\ncloth = \"left\"\nwith = \"floor\"\nfriction = 0.1\n")
+                .find("no cloth or solid named 'floor'"),
             std::string::npos);
-  EXPECT_NE(message("[[contact.pair]]\ncloth = \"left\"\nwith = \"right\"\n").find("give a thickness, a friction or both"),
+  EXPECT_NE(message("[[contact.pair]]\ncloth = \"left\"\nwith = \"right\"\n")
+                .find("give a thickness, a friction or both"),
             std::string::npos);
-  EXPECT_NE(message("[[contact.pair]]\ncloth = \"left\"\nwith = \"right\"\nthickness = 0\n").find("above 0"), std::string::npos);
+  EXPECT_NE(message("[[contact.pair]]\ncloth = \"left\"\nwith = \"right\"\nthickness = 0\n")
+                .find("above 0"),
+            std::string::npos);
   const std::string one = "[[contact.pair]]\ncloth = \"left\"\nwith = \"right\"\nfriction = 0.1\n";
-  const std::string turned = "[[contact.pair]]\ncloth = \"right\"\nwith = \"left\"\nfriction = 0.2\n";
+  const std::string turned =
+      "[[contact.pair]]\ncloth = \"right\"\nwith = \"left\"\nfriction = 0.2\n";
   EXPECT_NE(message(one + turned).find("keep one of them"), std::string::npos);
 }
 
 TEST(ContactPair, IsWrittenAndReadBack) {
-  Scene scene = read_scene_text(two_sheets(0.1, "[[contact.pair]]\ncloth = \"left\"\nwith = \"right\"\nfriction = 0.1\n"), "pair.toml");
+  Scene scene = read_scene_text(
+      two_sheets(0.1, "[[contact.pair]]\ncloth = \"left\"\nwith = \"right\"\nfriction = 0.1\n"),
+      "pair.toml");
   ASSERT_EQ(scene.contact.pairs.size(), 1u);
   const Scene again = read_scene_text(scene_to_toml(scene), "again.toml");
   EXPECT_EQ(again.contact.pairs, scene.contact.pairs);

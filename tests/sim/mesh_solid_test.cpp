@@ -14,7 +14,8 @@
 namespace taut {
 namespace {
 
-const TriangleMesh wedge{{{0, 0, 0}, {2, 0, 0}, {0, 4, 0}, {0, 0, 6}}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}, {}};
+const TriangleMesh wedge{
+    {{0, 0, 0}, {2, 0, 0}, {0, 4, 0}, {0, 0, 6}}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}, {}};
 
 Vec3 vertex_at(const MeshSolid& solid, double time, std::size_t vertex) {
   std::vector<Vec3> x(static_cast<std::size_t>(solid.vertices()));
@@ -50,14 +51,21 @@ TEST(MeshSolid, FollowsItsSamples) {
   solid.shape = SolidShape::mesh;
   solid.mesh = "wedge.obj", solid.motion = "wedge.pc2", solid.motion_rate = 10.0;
   const MeshSolid deforming(solid, folder / "");
-  for (const auto& [time, z] : {std::pair(-1.0, 6.0), {0.0, 6.0}, {0.05, 6.5}, {0.1, 7.0}, {0.175, 7.75}, {0.2, 8.0}, {9.0, 8.0}})
+  for (const auto& [time, z] : {std::pair(-1.0, 6.0),
+                                {0.0, 6.0},
+                                {0.05, 6.5},
+                                {0.1, 7.0},
+                                {0.175, 7.75},
+                                {0.2, 8.0},
+                                {9.0, 8.0}})
     EXPECT_NEAR(vertex_at(deforming, time, 3).z(), z, 1e-12) << time;
 }
 
 TEST(MeshSolid, ClothRestsOnAMeshAndIsNotThroughIt) {
   const test::TemporaryFolder folder;
   const double s = 0.5;
-  write_obj(folder / "table.obj", {{{-s, -s, 0}, {s, -s, 0}, {s, s, 0}, {-s, s, 0}}, {{0, 1, 2}, {0, 2, 3}}, {}});
+  write_obj(folder / "table.obj",
+            {{{-s, -s, 0}, {s, -s, 0}, {s, s, 0}, {-s, s, 0}}, {{0, 1, 2}, {0, 2, 3}}, {}});
   const std::string text = R"(
 [time]
 step = 5e-3
@@ -85,7 +93,8 @@ thickness = 2e-3
     EXPECT_NEAR(x.z(), 2e-3, 1e-3);
     slid += x.x() / 81;
   }
-  // 0.064 s of falling at 0.5 m/s, then v²/(2 mu g), plus what landing adds to the pressure: it stops earlier.
+  // 0.064 s of falling at 0.5 m/s, then v²/(2 mu g), plus what landing adds to the pressure: it
+  // stops earlier.
   EXPECT_GT(slid, 0.5 * 0.06);
   EXPECT_LT(slid, 0.5 * 0.065 + 0.5 * 0.5 / (2 * 0.5 * 9.81) + 0.005);
 }
@@ -99,7 +108,8 @@ TEST(MeshSolid, AMissingFileIsNamed) {
     MeshSolid(solid, "/scenes");
     FAIL() << "not refused";
   } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("/scenes/nowhere.obj"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("/scenes/nowhere.obj"), std::string::npos)
+        << error.what();
   }
 }
 

@@ -1,4 +1,5 @@
-// What is recorded of contact at each node, against where the nodes are, and that it does not depend on threads or on a resume.
+// What is recorded of contact at each node, against where the nodes are, and that it does not
+// depend on threads or on a resume.
 
 #include "taut/sim/node_contact.h"
 
@@ -42,7 +43,8 @@ radius = 0.4
 friction = 0.5
 thickness = 0.01
 )"));
-  for (const std::uint8_t bits : node_contact(simulation)) ASSERT_EQ(bits, 0) << "before the first step";
+  for (const std::uint8_t bits : node_contact(simulation))
+    ASSERT_EQ(bits, 0) << "before the first step";
   advance(simulation, 60);
   const std::vector<std::uint8_t> contact = node_contact(simulation);
   int touching = 0, near = 0;
@@ -93,8 +95,11 @@ self = true
 TEST(NodeContact, KnowsSolidsThatAreMeshes) {
   const test::TemporaryFolder folder;
   const double s = 0.5;
-  write_obj(folder / "table.obj", {{{-s, -s, 0}, {s, -s, 0}, {s, s, 0}, {-s, s, 0}}, {{0, 1, 2}, {0, 2, 3}}, {}});
-  Simulation simulation(scene_of(sheet + "[[solid]]\nshape = \"mesh\"\nmesh = \"table.obj\"\nfriction = 0.5\n", (folder / "").string()));
+  write_obj(folder / "table.obj",
+            {{{-s, -s, 0}, {s, -s, 0}, {s, s, 0}, {-s, s, 0}}, {{0, 1, 2}, {0, 2, 3}}, {}});
+  Simulation simulation(
+      scene_of(sheet + "[[solid]]\nshape = \"mesh\"\nmesh = \"table.obj\"\nfriction = 0.5\n",
+               (folder / "").string()));
   advance(simulation, 3);
   for (const std::uint8_t bits : node_contact(simulation)) ASSERT_EQ(bits, 0) << "still falling";
   advance(simulation, 117);
@@ -116,7 +121,8 @@ TEST(NodeContact, SameForAnyNumberOfThreadsAndAfterAResume) {
       advance(simulation, 1);
       if (k > interrupted) advance(resumed, 1);
       if (k == interrupted)
-        resumed.restore(simulation.state(), simulation.contact().state(), simulation.steps_done(), simulation.stepper().solver().memory(),
+        resumed.restore(simulation.state(), simulation.contact().state(), simulation.steps_done(),
+                        simulation.stepper().solver().memory(),
                         simulation.surface_contact()->state());
       const std::vector<std::uint8_t> contact = node_contact(simulation);
       for (const std::uint8_t bits : contact) seen |= bits;
@@ -128,7 +134,8 @@ TEST(NodeContact, SameForAnyNumberOfThreadsAndAfterAResume) {
     }
   }
   set_thread_count(usual);
-  EXPECT_EQ(seen, touches_solid | touches_cloth | held_in_zone) << "the test does not see all there is";
+  EXPECT_EQ(seen, touches_solid | touches_cloth | held_in_zone)
+      << "the test does not see all there is";
 }
 
 }  // namespace

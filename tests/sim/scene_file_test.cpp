@@ -47,13 +47,18 @@ Scene everything_changed(const fs::path& mesh) {
             .newton = {.tolerance = 1e-5, .max_iterations = 99},
             .overshoot_limit = 0.7,
             .max_halvings = 2};
-  s.solver = {.name = "mpcg:diagonal", .tolerance = 1e-5, .max_iterations = 17, .reordering = "matrix", .reuse_analysis = false};
+  s.solver = {.name = "mpcg:diagonal",
+              .tolerance = 1e-5,
+              .max_iterations = 17,
+              .reordering = "matrix",
+              .reuse_analysis = false};
   s.contact = {.max_passes = 3, .touch_tolerance = 1e-5 / 3};
   s.wind = {.velocity = Vec3(1, 2, 3), .gust = 0.3, .gust_frequency = 0.7};
 
   Cloth grid;
   grid.name = "grid";
-  grid.grid = {.nu = 4, .nv = 5, .origin = Vec3(0.1, 0.2, 0.3), .u = Vec3(1, 0.5, 0), .v = Vec3(0, 0, -2)};
+  grid.grid = {
+      .nu = 4, .nv = 5, .origin = Vec3(0.1, 0.2, 0.3), .u = Vec3(1, 0.5, 0), .v = Vec3(0, 0, -2)};
   grid.node_mass = 1e-5 / 7;
   grid.drag = 1e-6;
   grid.wind_pressure = 0.4;
@@ -69,7 +74,9 @@ Scene everything_changed(const fs::path& mesh) {
   grid.velocity = Vec3(-1, 1e-300, 1e300);
   grid.jitter = 1e-4;
   grid.jitter_seed = 99;
-  KeyFrame turned{0.25, {Eigen::Quaterniond(Eigen::AngleAxisd(1.234, Vec3(1, 2, 3).normalized())), Vec3(3, 2, 1)}};
+  KeyFrame turned{
+      0.25,
+      {Eigen::Quaterniond(Eigen::AngleAxisd(1.234, Vec3(1, 2, 3).normalized())), Vec3(3, 2, 1)}};
   grid.pins.resize(3);
   grid.pins[0].where.corners = {"u0v1", "u1v1"};
   grid.pins[0].key_frames = {{-0.5, {}}, turned};
@@ -111,9 +118,12 @@ TEST(SceneFile, WritingAndReadingKeepsEveryBit) {
   expect_round_trip(everything_changed(folder / "cloth.obj"));
 }
 
-// Most rotations are not those of any written axis and angle: they come back as quaternions, to the bit all the same.
+// Most rotations are not those of any written axis and angle: they come back as quaternions, to the
+// bit all the same.
 TEST(SceneFile, AnyRotationKeepsItsBits) {
-  Scene scene = read_scene_text("[[cloth]]\ngrid = { nodes = [2, 2], u = [1, 0, 0], v = [0, 1, 0] }\ndensity = 1\n", "/a.toml");
+  Scene scene = read_scene_text(
+      "[[cloth]]\ngrid = { nodes = [2, 2], u = [1, 0, 0], v = [0, 1, 0] }\ndensity = 1\n",
+      "/a.toml");
   std::srand(5);
   for (int i = 0; i < 50; ++i) {
     Solid solid = named(std::string("s").append(std::to_string(i)), SolidShape::sphere);
@@ -128,14 +138,17 @@ TEST(SceneFile, RoundAnglesAreWrittenAsAHumanWould) {
       "[[cloth]]\ngrid = { nodes = [2, 2], u = [1, 0, 0], v = [0, 1, 0] }\ndensity = 1\n"
       "[[solid]]\nshape = \"plane\"\nrotation = { axis = [0, 2, 0], degrees = 30 }\n",
       "/a.toml");
-  EXPECT_NE(scene_to_toml(scene).find("rotation = { axis = [0, 1, 0], degrees = 30 }"), std::string::npos) << scene_to_toml(scene);
+  EXPECT_NE(scene_to_toml(scene).find("rotation = { axis = [0, 1, 0], degrees = 30 }"),
+            std::string::npos)
+      << scene_to_toml(scene);
 }
 
 // x turns to -z about +y by 90 degrees: the right-hand rule.
 TEST(SceneFile, RotationsAreRightHandedAndBeforeTranslation) {
   const Scene scene = read_scene_text(
       "[[cloth]]\ngrid = { nodes = [2, 2], u = [1, 0, 0], v = [0, 1, 0] }\ndensity = 1\n"
-      "[[solid]]\nshape = \"plane\"\nrotation = { axis = [0, 3, 0], degrees = 90 }\ntranslation = [5, 0, 0]\n",
+      "[[solid]]\nshape = \"plane\"\nrotation = { axis = [0, 3, 0], degrees = 90 }\ntranslation = "
+      "[5, 0, 0]\n",
       "/a.toml");
   EXPECT_LT((scene.solids[0].initial.to_world(Vec3::UnitX()) - Vec3(5, 0, -1)).norm(), 1e-15);
 }
@@ -151,7 +164,9 @@ TEST(SceneFile, AMeshStartsFromTheFolderOfTheScene) {
 }
 
 TEST(SceneFile, LeftOutMeansTheDefaultOfTheStruct) {
-  const Scene scene = read_scene_text("[[cloth]]\ngrid = { nodes = [2, 2], u = [1, 0, 0], v = [0, 1, 0] }\ndensity = 1\n", "/a.toml");
+  const Scene scene = read_scene_text(
+      "[[cloth]]\ngrid = { nodes = [2, 2], u = [1, 0, 0], v = [0, 1, 0] }\ndensity = 1\n",
+      "/a.toml");
   EXPECT_TRUE(scene.time == TimeOptions{});
   EXPECT_TRUE(scene.solver == SolverOptions{.name = "auto"});
   EXPECT_TRUE(scene.contact == ContactOptions{});
@@ -179,7 +194,8 @@ TEST(ShippedScenes, AreReadRoundTripAndRaiseNoDoubts) {
     const bool without_body = entry.path().stem() == "body";
     const std::string any = "=\"" + (source_dir / "scenes/meshes/tshirt.obj").string() + "\"";
     const std::vector<std::string> stand_in{"solid.0.mesh" + any, "solid.0.motion" + any};
-    const Scene scene = read_scene(entry.path(), without_body ? stand_in : std::vector<std::string>{});
+    const Scene scene =
+        read_scene(entry.path(), without_body ? stand_in : std::vector<std::string>{});
     EXPECT_FALSE(scene.title.empty());
     EXPECT_TRUE(read_file(entry.path()).starts_with("# ")) << "a comment that says what one sees";
     expect_round_trip(scene);
@@ -193,7 +209,9 @@ TEST(ShippedScenes, AreReadRoundTripAndRaiseNoDoubts) {
 TEST(ShippedScenes, BodyTakesABodyOfOnesOwn) {
   const auto data = test::data_folder();
   if (!data) GTEST_SKIP() << "no ../shared/data and no $TAUT_DATA";
-  const auto quoted = [&](const char* key, const char* name) { return std::string(key) + "=\"" + (*data / "body" / name).string() + "\""; };
+  const auto quoted = [&](const char* key, const char* name) {
+    return std::string(key) + "=\"" + (*data / "body" / name).string() + "\"";
+  };
   const std::vector<std::string> settings{quoted("solid.0.mesh", "body_rest_tri.obj"),
                                           quoted("solid.0.motion", "body_A_to_T_9x13380x3.f32")};
   const Scene scene = read_scene(source_dir / "scenes/body.toml", settings);
@@ -216,8 +234,11 @@ TEST(ShippedScenes, BallIsThePapers) {
   EXPECT_EQ(scene.solver.name, "core_pcg");
   EXPECT_EQ(sheet.node_mass, 9.5e-6);
   // Springs that push are ours (docs/paper.md says why); the rest is the paper's.
-  const SpringMaterial material{
-      .k_stretch = 6000, .k_shear = 0.3, .k_bend = 0.05, .compression = Compression::linear, .bend_model = BendModel::linear};
+  const SpringMaterial material{.k_stretch = 6000,
+                                .k_shear = 0.3,
+                                .k_bend = 0.05,
+                                .compression = Compression::linear,
+                                .bend_model = BendModel::linear};
   EXPECT_TRUE(sheet.material == material);
   EXPECT_EQ(sheet.drag, 1e-6);
   EXPECT_EQ(sheet.grid.u.norm(), 1);
@@ -235,7 +256,8 @@ TEST(SceneReference, TheDocumentedKeysAreThoseOfTheCode) {
   const fs::path page = source_dir / "docs/scene-reference.md";
   const std::string text = scene_reference();
   if (std::getenv("TAUT_UPDATE")) write_file(page, text);
-  EXPECT_EQ(read_file(page), text) << "docs/scene-reference.md is out of date: run this test with TAUT_UPDATE=1 in the environment";
+  EXPECT_EQ(read_file(page), text) << "docs/scene-reference.md is out of date: run this test with "
+                                      "TAUT_UPDATE=1 in the environment";
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// The simulation loop on small scenes: the same bits for any thread count, energy, going on from a checkpoint, a solver that fails.
+// The simulation loop on small scenes: the same bits for any thread count, energy, going on from a
+// checkpoint, a solver that fails.
 
 #include "taut/sim/simulation.h"
 
@@ -22,7 +23,8 @@ Scene scene_of(const std::string& text, std::vector<std::string> settings = {}) 
   return read_scene_text(text, "/scenes/test.toml", settings);
 }
 
-// A sheet that falls on a sphere with friction, and a flying ball of another friction that hits it from the side.
+// A sheet that falls on a sphere with friction, and a flying ball of another friction that hits it
+// from the side.
 const std::string crowded = R"(
 [time]
 step = 4e-3
@@ -63,7 +65,8 @@ Outcome simulate(const Scene& scene, int steps) {
     const Status status = simulation.step(record);
     EXPECT_TRUE(status.ok()) << status.message;
     outcome.most_contacts = std::max(outcome.most_contacts, record.contacts);
-    outcome.sliding += static_cast<int>(std::ranges::count(simulation.contact().state().sticking, 0, &ContactStick::sticks));
+    outcome.sliding += static_cast<int>(
+        std::ranges::count(simulation.contact().state().sticking, 0, &ContactStick::sticks));
   }
   outcome.state = simulation.state();
   outcome.contacts = simulation.contact().state();
@@ -71,14 +74,15 @@ Outcome simulate(const Scene& scene, int steps) {
 }
 
 void expect_same(const State& a, const State& b, const std::string& what) {
-  EXPECT_TRUE(a.x == b.x && a.v == b.v && a.x_prev == b.x_prev && a.v_prev == b.v_prev && a.last == b.last && a.time == b.time &&
-              a.has_previous == b.has_previous)
+  EXPECT_TRUE(a.x == b.x && a.v == b.v && a.x_prev == b.x_prev && a.v_prev == b.v_prev &&
+              a.last == b.last && a.time == b.time && a.has_previous == b.has_previous)
       << what;
 }
 
 TEST(Simulation, DeterministicForAnyNumberOfThreads) {
   const int usual = thread_count();
-  for (const char* variant : {"time.integrator=\"semi_implicit_euler\"", "time.integrator=\"bdf2\""}) {
+  for (const char* variant :
+       {"time.integrator=\"semi_implicit_euler\"", "time.integrator=\"bdf2\""}) {
     const Scene scene = scene_of(crowded, {variant, "solver.name=\"core_pcg:block\""});
     Outcome first;
     for (const int threads : {1, 2, 4}) {
@@ -89,7 +93,8 @@ TEST(Simulation, DeterministicForAnyNumberOfThreads) {
         EXPECT_GT(outcome.most_contacts, 30);
         EXPECT_GT(outcome.sliding, 30) << "no friction: the test says little";
       }
-      expect_same(outcome.state, first.state, std::string(variant) + ", " + std::to_string(threads) + " threads");
+      expect_same(outcome.state, first.state,
+                  std::string(variant) + ", " + std::to_string(threads) + " threads");
       EXPECT_TRUE(outcome.contacts == first.contacts);
     }
   }
@@ -110,7 +115,8 @@ TEST(Simulation, GoesOnFromACheckpointToTheSameBits) {
         Interrupted{"time.integrator=bdf2", "solver.name=core_pcg:block", 20},
         Interrupted{"time.integrator=semi_implicit_euler", "solver.name=auto", 2},
         Interrupted{"time.integrator=semi_implicit_euler", "solver.name=auto", 20},
-        Interrupted{"time.integrator=newton", "solver.name=auto", 20}, Interrupted{"time.integrator=bdf2", "solver.name=auto", 23}}) {
+        Interrupted{"time.integrator=newton", "solver.name=auto", 20},
+        Interrupted{"time.integrator=bdf2", "solver.name=auto", 23}}) {
     const Scene scene = scene_of(crowded, {integrator, solver, "cloth.grid.nodes=[21, 20]"});
     SCOPED_TRACE(fmt::format("{}, {}, step {}", integrator, solver, at));
     Simulation whole(scene), resumed(scene);
@@ -120,21 +126,29 @@ TEST(Simulation, GoesOnFromACheckpointToTheSameBits) {
       if (k == at) {
         EXPECT_GE(whole.contact().contacts(), k < 10 ? 0 : 5);
         std::ostringstream out;
-        write(out, Checkpoint{scene_to_toml(scene), whole.steps_done(), 3, whole.state(), whole.contact().state(),
-                              whole.stepper().solver().memory(), whole.surface_contact()->state(), {}});
+        write(out, Checkpoint{scene_to_toml(scene),
+                              whole.steps_done(),
+                              3,
+                              whole.state(),
+                              whole.contact().state(),
+                              whole.stepper().solver().memory(),
+                              whole.surface_contact()->state(),
+                              {}});
         bytes = out.str();
       }
       ASSERT_TRUE(whole.step(record).ok());
     }
     Checkpoint checkpoint = parse_checkpoint(bytes, "state.bin");
-    resumed.restore(checkpoint.state, checkpoint.contacts, checkpoint.steps, checkpoint.solver_memory, checkpoint.surface_contact);
+    resumed.restore(checkpoint.state, checkpoint.contacts, checkpoint.steps,
+                    checkpoint.solver_memory, checkpoint.surface_contact);
     for (int k = at; k < 40; ++k) ASSERT_TRUE(resumed.step(record).ok());
     EXPECT_EQ(resumed.steps_done(), 40);
     expect_same(resumed.state(), whole.state(), integrator);
     EXPECT_TRUE(resumed.contact().state() == whole.contact().state());
     EXPECT_EQ(resumed.stepper().solver().memory(), whole.stepper().solver().memory());
     if (scene.solver.name == "auto") {
-      EXPECT_NE(checkpoint.solver_memory, make_solver(scene.solver)->memory()) << "there was nothing to remember";
+      EXPECT_NE(checkpoint.solver_memory, make_solver(scene.solver)->memory())
+          << "there was nothing to remember";
     }
   }
 }
@@ -152,17 +166,18 @@ drag = 1e-3
 corners = ["u0v0", "u1v0", "u0v1", "u1v1"]
 )";
 
-// Drag takes away kinetic energy at c/m = 1.1/s, semi-implicit Euler's own damping much more. BDF2 with springs that go slack (compression
-// "none") is not dissipative: its single linearised solve misjudges springs that go taut within the step. Here energy rises by up to 5 % of
-// all that is lost in a step of 5 ms, 0.3 % in one of 1 ms; so it is tested on springs that push back.
+// Drag takes away kinetic energy at c/m = 1.1/s, semi-implicit Euler's own damping much more. BDF2
+// with springs that go slack (compression "none") is not dissipative: its single linearised solve
+// misjudges springs that go taut within the step. Here energy rises by up to 5 % of all that is
+// lost in a step of 5 ms, 0.3 % in one of 1 ms; so it is tested on springs that push back.
 struct Decay {
   std::vector<std::string> settings;
   double calm;  // kinetic energy after six seconds, of its maximum
 };
 
 TEST(Simulation, EnergyOfADampedSheetDecays) {
-  for (const Decay& decay :
-       {Decay{{"time.integrator=semi_implicit_euler"}, 1e-5}, Decay{{"time.integrator=bdf2", "cloth.compression=linear"}, 5e-3}}) {
+  for (const Decay& decay : {Decay{{"time.integrator=semi_implicit_euler"}, 1e-5},
+                             Decay{{"time.integrator=bdf2", "cloth.compression=linear"}, 5e-3}}) {
     std::vector<std::string> settings = decay.settings;
     settings.push_back("solver.tolerance=1e-8");
     const std::string& integrator = settings.front();
@@ -172,7 +187,8 @@ TEST(Simulation, EnergyOfADampedSheetDecays) {
     const auto height_energy = [&] {
       double sum = 0.0;
       for (Index i = 0; i < simulation.cloth().nodes(); ++i)
-        sum -= simulation.cloth().external().masses()[i] * scene.gravity.dot(simulation.state().x[i]);
+        sum -=
+            simulation.cloth().external().masses()[i] * scene.gravity.dot(simulation.state().x[i]);
       return sum;
     };
     const double start = height_energy();
@@ -212,7 +228,8 @@ TEST(Simulation, ASolverThatGivesUpIsReplacedForThatSolveAndCounted) {
     EXPECT_FALSE(record.solver.starts_with("mpcg")) << record.solver;
   }
   for (Index i = 0; i < simulation.cloth().nodes(); ++i)
-    EXPECT_LT((simulation.state().x[i] - reference.state().x[i]).norm(), 1e-6) << "the direct method gives the same motion";
+    EXPECT_LT((simulation.state().x[i] - reference.state().x[i]).norm(), 1e-6)
+        << "the direct method gives the same motion";
 }
 
 // A sheet that spins about one held corner, 0.4 rad a step.
@@ -255,20 +272,27 @@ TEST(Simulation, StepsThatOvershootAreHalved) {
   EXPECT_EQ(halved[0].time, whole[0].time);
 }
 
-// Of a step cut in two, each half is a whole step of half the length. BDF2 starts afresh with each of them, which makes it Euler's method.
+// Of a step cut in two, each half is a whole step of half the length. BDF2 starts afresh with each
+// of them, which makes it Euler's method.
 TEST(Simulation, HalvesAreStepsOfHalfTheLength) {
   for (const char* integrator : {"semi_implicit_euler", "bdf2"}) {
     std::vector<StepRecord> halved, half;
-    const State a = spin(scene_of(spinning, {"time.overshoot_limit=0", "time.max_halvings=1", "solver.tolerance=1e-12",
+    const State a = spin(scene_of(spinning, {"time.overshoot_limit=0", "time.max_halvings=1",
+                                             "solver.tolerance=1e-12",
                                              fmt::format("time.integrator=\"{}\"", integrator)}),
                          6, halved);
-    const State b = spin(scene_of(spinning, {"time.max_halvings=0", "time.step=2e-3", "solver.tolerance=1e-12"}), 12, half);
+    const State b = spin(
+        scene_of(spinning, {"time.max_halvings=0", "time.step=2e-3", "solver.tolerance=1e-12"}), 12,
+        half);
     for (const StepRecord& record : halved) ASSERT_EQ(record.retries, 1);
-    for (std::size_t i = 0; i < a.x.size(); ++i) ASSERT_LT((a.x[i] - b.x[i]).norm(), 1e-9) << integrator << ", node " << i;
+    for (std::size_t i = 0; i < a.x.size(); ++i)
+      ASSERT_LT((a.x[i] - b.x[i]).norm(), 1e-9) << integrator << ", node " << i;
   }
   std::vector<StepRecord> records;
-  EXPECT_FALSE(
-      spin(scene_of(spinning, {"time.overshoot_limit=0", "time.max_halvings=1", "time.integrator=\"bdf2\""}), 1, records).has_previous)
+  EXPECT_FALSE(spin(scene_of(spinning, {"time.overshoot_limit=0", "time.max_halvings=1",
+                                        "time.integrator=\"bdf2\""}),
+                    1, records)
+                   .has_previous)
       << "the next step is longer than the last";
 }
 
@@ -282,23 +306,28 @@ TEST(Simulation, AStepThatCannotBeSolvedLeavesTheStateAsItWas) {
   const Status status = simulation.step(record);
   ASSERT_FALSE(status.ok());
   EXPECT_NE(status.message.find("step 1"), std::string::npos) << status.message;
-  EXPECT_NE(status.message.find("also with steps of 0.00025 s"), std::string::npos) << status.message;
+  EXPECT_NE(status.message.find("also with steps of 0.00025 s"), std::string::npos)
+      << status.message;
   EXPECT_EQ(record.retries, 4);
   expect_same(simulation.state(), state, "after the failed step");
   EXPECT_EQ(simulation.steps_done(), 0);
 }
 
-// A slack sheet in free flight whose shear springs are too stiff for an explicit step: h² k_shear/m = 11.
+// A slack sheet in free flight whose shear springs are too stiff for an explicit step: h² k_shear/m
+// = 11.
 TEST(Simulation, AdaptiveImexHoldsWhereImexExplodes) {
   const auto kinetic = [](const char* integrator) {
     Simulation simulation(
-        scene_of("gravity = [0, 0, 0]\n[time]\nstep = 6e-3\novershoot_limit = 1e6\n[[cloth]]\ngrid = { nodes = [9, 9], u = [0.1, 0, 0], v "
-                 "= [0, 0.1, 0] }\nnode_mass = 9.5e-6\nk_stretch = 60\nk_shear = 3\nk_bend = 0.01\ncompression = "
+        scene_of("gravity = [0, 0, 0]\n[time]\nstep = 6e-3\novershoot_limit = 1e6\n[[cloth]]\ngrid "
+                 "= { nodes = [9, 9], u = [0.1, 0, 0], v "
+                 "= [0, 0.1, 0] }\nnode_mass = 9.5e-6\nk_stretch = 60\nk_shear = 3\nk_bend = "
+                 "0.01\ncompression = "
                  "\"linear\"\njitter = 1e-4\n",
                  {std::string("time.integrator=\"") + integrator + "\"", "contact.self=false"}));
     StepRecord record;
     double largest = 0.0;
-    for (int k = 0; k < 200 && simulation.step(record).ok() && largest < 1.0; ++k) largest = std::max(largest, record.kinetic_J);
+    for (int k = 0; k < 200 && simulation.step(record).ok() && largest < 1.0; ++k)
+      largest = std::max(largest, record.kinetic_J);
     return largest;
   };
   EXPECT_GT(kinetic("imex"), 0.1);
@@ -308,11 +337,12 @@ TEST(Simulation, AdaptiveImexHoldsWhereImexExplodes) {
 // Pins carried along key frames: linear in between, exactly there at every step.
 TEST(Simulation, PinsFollowTheirPathsExactly) {
   for (const char* integrator : {"semi_implicit_euler", "imex", "bdf2"}) {
-    const Scene scene =
-        scene_of(pinned + R"(key_frames = [ { time = 0, translation = [0, 0, 0] }, { time = 0.1, translation = [0.1, 0, 0.2] },
+    const Scene scene = scene_of(
+        pinned +
+            R"(key_frames = [ { time = 0, translation = [0, 0, 0] }, { time = 0.1, translation = [0.1, 0, 0.2] },
                                  { time = 0.2, translation = [0.1, 0.3, 0] } ]
 )",
-                 {"time.integrator=\"" + std::string(integrator) + "\"", "time.step=2e-3"});
+        {"time.integrator=\"" + std::string(integrator) + "\"", "time.step=2e-3"});
     Simulation simulation(scene);
     const std::vector<Vec3> start = simulation.state().x;
     StepRecord record;
@@ -322,7 +352,8 @@ TEST(Simulation, PinsFollowTheirPathsExactly) {
       const double first = std::min(1.0, t / 0.1), second = std::clamp((t - 0.1) / 0.1, 0.0, 1.0);
       const Vec3 moved = first * Vec3(0.1, 0, 0.2) + second * Vec3(0, 0.3, -0.2);
       for (const Index node : {0, 12, 156, 168})
-        ASSERT_LT((simulation.state().x[node] - start[node] - moved).norm(), 1e-14) << integrator << ", step " << k;
+        ASSERT_LT((simulation.state().x[node] - start[node] - moved).norm(), 1e-14)
+            << integrator << ", step " << k;
       ASSERT_EQ(record.constraints, 12);
       ASSERT_EQ(record.dof, 3 * 169 - 12);
     }
@@ -338,7 +369,8 @@ TEST(Simulation, ReleasedPinsLetGo) {
     ASSERT_TRUE(simulation.step(record).ok());
     constraints.push_back(record.constraints);
   }
-  EXPECT_EQ(constraints, (std::vector<Index>{12, 12, 12, 12, 12, 12, 12, 12, 12, 12, 0, 0, 0, 0, 0}));
+  EXPECT_EQ(constraints,
+            (std::vector<Index>{12, 12, 12, 12, 12, 12, 12, 12, 12, 12, 0, 0, 0, 0, 0}));
 }
 
 }  // namespace

@@ -5,7 +5,8 @@
 
 namespace taut::test {
 
-// A sheet whose border has slipped under its neighbour; lines of the lower one's table beside its shape.
+// A sheet whose border has slipped under its neighbour; lines of the lower one's table beside its
+// shape.
 inline std::string slipped_scene(const std::string& of_lower = "") {
   return R"(title = "Slipped"
 [time]

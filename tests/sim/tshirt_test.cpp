@@ -16,14 +16,17 @@ Index shoulder(const TriangleMesh& shirt, double from, double to) {
   Index highest = -1;
   for (Index i = 0; i < static_cast<Index>(shirt.positions.size()); ++i) {
     const Vec3& p = shirt.positions[i];
-    if (p.x() >= from && p.x() <= to && (highest < 0 || p.y() > shirt.positions[highest].y())) highest = i;
+    if (p.x() >= from && p.x() <= to && (highest < 0 || p.y() > shirt.positions[highest].y()))
+      highest = i;
   }
   return highest;
 }
 
-// 0.2 kg/m² is a T-shirt's jersey. Springs of 2000 N/m on edges of 2 cm are a fabric of some 2 kN/m, as woven cotton: each shoulder bears
-// half of the shirt's weight, about 1 N, mostly on one or two edges. compression = "linear": the mesh has no shear springs, and an edge
-// that gives way in compression would let its triangles fold flat under the pins; a knitted shirt that fine does push back over 2 cm.
+// 0.2 kg/m² is a T-shirt's jersey. Springs of 2000 N/m on edges of 2 cm are a fabric of some 2
+// kN/m, as woven cotton: each shoulder bears half of the shirt's weight, about 1 N, mostly on one
+// or two edges. compression = "linear": the mesh has no shear springs, and an edge that gives way
+// in compression would let its triangles fold flat under the pins; a knitted shirt that fine does
+// push back over 2 cm.
 constexpr const char* scene_text = R"(
 [time]
 step = 5e-3
@@ -43,7 +46,8 @@ drag = 2e-5
 nodes = [LEFT, RIGHT]
 )";
 
-std::string filled(std::string text, const std::vector<std::pair<std::string, std::string>>& values) {
+std::string filled(std::string text,
+                   const std::vector<std::pair<std::string, std::string>>& values) {
   for (const auto& [name, value] : values) text.replace(text.find(name), name.size(), value);
   return text;
 }
@@ -55,9 +59,10 @@ TEST(TShirt, HangsByItsShoulders) {
   const TriangleMesh shirt = read_obj(path);
   const Topology topology = build_topology(shirt);
   const Index left = shoulder(shirt, -18, -14), right = shoulder(shirt, 14, 18);
-  Simulation simulation(
-      read_scene_text(filled(scene_text, {{"SHIRT", path.string()}, {"LEFT", std::to_string(left)}, {"RIGHT", std::to_string(right)}}),
-                      "/scenes/tshirt.toml"));
+  Simulation simulation(read_scene_text(filled(scene_text, {{"SHIRT", path.string()},
+                                                            {"LEFT", std::to_string(left)},
+                                                            {"RIGHT", std::to_string(right)}}),
+                                        "/scenes/tshirt.toml"));
 
   const auto& springs = simulation.cloth().springs();
   ASSERT_EQ(springs.size(), 2u);
@@ -65,10 +70,12 @@ TEST(TShirt, HangsByItsShoulders) {
   EXPECT_EQ(springs[1]->springs().size(), topology.hinges.size());
   const std::vector<Vec3> start = simulation.state().x;
   ASSERT_EQ(start.size(), 2799u);
-  EXPECT_NEAR(start[left].z(), 0.01 * shirt.positions[left].y(), 1e-12) << "Y up became Z up, centimetres metres";
+  EXPECT_NEAR(start[left].z(), 0.01 * shirt.positions[left].y(), 1e-12)
+      << "Y up became Z up, centimetres metres";
   double mass = 0.0, area = 0.0;
   for (const double m : simulation.cloth().external().masses()) mass += m;
-  for (Index t = 0; t < static_cast<Index>(shirt.triangles.size()); ++t) area += triangle_area(shirt, t);
+  for (Index t = 0; t < static_cast<Index>(shirt.triangles.size()); ++t)
+    area += triangle_area(shirt, t);
   EXPECT_NEAR(mass, 0.2 * 1e-4 * area, 1e-12);
 
   const auto lowest = [&] {
@@ -87,7 +94,8 @@ TEST(TShirt, HangsByItsShoulders) {
   }
   EXPECT_LT(stretch, 0.2);
   EXPECT_GT(stretch, 0.001) << "it hangs: its pins are felt";
-  for (const Index pin : {left, right}) EXPECT_LT((simulation.state().x[pin] - start[pin]).norm(), 1e-12);
+  for (const Index pin : {left, right})
+    EXPECT_LT((simulation.state().x[pin] - start[pin]).norm(), 1e-12);
   // It hangs below the pins, neither fallen off nor drawn out.
   EXPECT_GT(lowest(), hem - 0.15);
   double middle = 0.0;

@@ -1,4 +1,5 @@
-// Scenes that start intersecting, repaired by contact.untangle: CGAL finds nothing left, and the run goes on from there.
+// Scenes that start intersecting, repaired by contact.untangle: CGAL finds nothing left, and the
+// run goes on from there.
 
 #include <gtest/gtest.h>
 
@@ -19,7 +20,9 @@ namespace {
 std::size_t judged(const Simulation& simulation) {
   const SurfaceContact& contact = *simulation.surface_contact();
   const CollisionSurface& surface = contact.contact().surface();
-  return test::intersecting_triangles(contact.positions(0.0, simulation.state().x), surface.triangles, surface.is_solid).size();
+  return test::intersecting_triangles(contact.positions(0.0, simulation.state().x),
+                                      surface.triangles, surface.is_solid)
+      .size();
 }
 
 std::size_t judged_unrepaired(Scene scene) {
@@ -28,7 +31,8 @@ std::size_t judged_unrepaired(Scene scene) {
   return judged(Simulation(std::move(scene)));
 }
 
-// The shipped T-shirt laid flat: its front and back 6 mm apart, less towards the seams; jittered so that they go through each other.
+// The shipped T-shirt laid flat: its front and back 6 mm apart, less towards the seams; jittered so
+// that they go through each other.
 class FlatShirt : public testing::Test {
  protected:
   FlatShirt() {
@@ -52,7 +56,8 @@ k_shear = 0.5
 k_bend = 0.02
 jitter = 2e-3
 )";
-    return read_scene_text(std::string(text).replace(text.find("SHIRT"), 5, file_.string()), "/scenes/test.toml",
+    return read_scene_text(std::string(text).replace(text.find("SHIRT"), 5, file_.string()),
+                           "/scenes/test.toml",
                            std::vector<std::string>{"cloth.jitter_seed=" + std::to_string(seed)});
   }
 
@@ -81,28 +86,33 @@ TEST_F(FlatShirt, IsDrawnApartAndRuns) {
 
 TEST(UntangleScene, WhatCannotBeDrawnApartIsRefusedWithItsFaces) {
   try {
-    Simulation simulation(read_scene_text(test::pierced_scene(), "/scenes/test.toml", std::vector<std::string>{"contact.untangle=true"}));
+    Simulation simulation(read_scene_text(test::pierced_scene(), "/scenes/test.toml",
+                                          std::vector<std::string>{"contact.untangle=true"}));
     FAIL() << "not refused";
   } catch (const InputError& error) {
     const std::string text = error.what();
-    for (const char* part :
-         {"cannot be drawn apart", "are left after", "cloth 'strip'", "cloth 'sheet'", "the triangle", "Nothing was changed"})
+    for (const char* part : {"cannot be drawn apart", "are left after", "cloth 'strip'",
+                             "cloth 'sheet'", "the triangle", "Nothing was changed"})
       EXPECT_NE(text.find(part), std::string::npos) << text;
   }
 }
 
 TEST(UntangleScene, PinnedNodesStayWhereTheirPinsAre) {
-  const std::string text = test::slipped_scene("jitter = 1e-3\npin = [{ corners = [\"u0v0\", \"u1v0\"] }]\n");
-  const Scene scene = read_scene_text(text, "/scenes/test.toml", std::vector<std::string>{"contact.untangle=true"});
+  const std::string text =
+      test::slipped_scene("jitter = 1e-3\npin = [{ corners = [\"u0v0\", \"u1v0\"] }]\n");
+  const Scene scene =
+      read_scene_text(text, "/scenes/test.toml", std::vector<std::string>{"contact.untangle=true"});
   const ClothModel before(scene);
   Simulation simulation(scene);
   const UntangleReport& report = *simulation.surface_contact()->untangled();
   EXPECT_GT(report.intersections_before, 0);
   EXPECT_GT(report.moved, 20);
-  for (const Index pinned : {0, 14}) EXPECT_EQ(simulation.state().x[pinned], before.start().x[pinned]);
+  for (const Index pinned : {0, 14})
+    EXPECT_EQ(simulation.state().x[pinned], before.start().x[pinned]);
   StepRecord record;
   ASSERT_TRUE(simulation.step(record).ok());
-  for (const Index pinned : {0, 14}) EXPECT_LT((simulation.state().x[pinned] - before.start().x[pinned]).norm(), 1e-12);
+  for (const Index pinned : {0, 14})
+    EXPECT_LT((simulation.state().x[pinned] - before.start().x[pinned]).norm(), 1e-12);
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// The solver `auto`: right in every regime, settled on little counted work, the same choices from the same memory, and never stuck.
+// The solver `auto`: right in every regime, settled on little counted work, the same choices from
+// the same memory, and never stuck.
 
 #include "taut/solve/auto_solver.h"
 
@@ -22,11 +23,15 @@ struct Steps {
   std::vector<double> base;
 
   Steps(const Material& material, std::uint32_t seed, double tolerance = 1e-3)
-      : sheet(material, seed), solver(make_solver(solver_options("auto", tolerance))), x(sheet.b.size()), base(sheet.b) {
+      : sheet(material, seed),
+        solver(make_solver(solver_options("auto", tolerance))),
+        x(sheet.b.size()),
+        base(sheet.b) {
     sheet.hold_some();
   }
   SolveSummary next(int step) {
-    for (std::size_t i = 0; i < base.size(); ++i) sheet.b[i] = base[i] * (1.0 + 0.3 * std::sin(0.2 * step + 0.01 * static_cast<double>(i)));
+    for (std::size_t i = 0; i < base.size(); ++i)
+      sheet.b[i] = base[i] * (1.0 + 0.3 * std::sin(0.2 * step + 0.01 * static_cast<double>(i)));
     sheet.guess = x;
     return solver->solve(sheet.with_core(sheet.chosen), x);
   }
@@ -38,7 +43,12 @@ TEST(AutoSolver, SolvesEveryRegimeToTheAccuracyOfCorePcg) {
   for (const double h : {0.2e-3, 1e-3, 3.67e-3, 16.7e-3, 33e-3})
     for (const double k_shear : {0.3, 30.0, 600.0})
       for (const double k_stretch : {1.0, 6000.0, 6e6}) {
-        Steps steps({.k_stretch = k_stretch, .k_shear = k_shear, .k_bend = k_shear / 10, .h = h, .graded = ++seed % 2 == 0}, seed);
+        Steps steps({.k_stretch = k_stretch,
+                     .k_shear = k_shear,
+                     .k_bend = k_shear / 10,
+                     .h = h,
+                     .graded = ++seed % 2 == 0},
+                    seed);
         SCOPED_TRACE(steps.sheet.material.describe());
         for (int step = 0; step < 8; ++step) {
           const SolveSummary summary = steps.next(step);
@@ -50,7 +60,8 @@ TEST(AutoSolver, SolvesEveryRegimeToTheAccuracyOfCorePcg) {
           }
           EXPECT_EQ(summary.fallbacks, 0) << summary.remark;
           const LinearSystem system = steps.sheet.with_core(steps.sheet.chosen);
-          EXPECT_LT(anorm_error(system, steps.x, reference_solution(system)), 1e-2) << summary.remark;
+          EXPECT_LT(anorm_error(system, steps.x, reference_solution(system)), 1e-2)
+              << summary.remark;
           methods.emplace(summary.method, summary.core);
         }
       }
@@ -62,16 +73,21 @@ TEST(AutoSolver, SoftClothNeedsNoFactorAndStiffClothDoes) {
     Steps steps(material, 61);
     SolveSummary summary;
     for (int step = 0; step < 12; ++step) summary = steps.next(step);
-    // Between the two block-diagonal methods, one of which is core_fast on an empty core, hardly anything decides.
+    // Between the two block-diagonal methods, one of which is core_fast on an empty core, hardly
+    // anything decides.
     constexpr double block_diagonal = 9.0;  // entries a node, at most
-    const bool factorised = summary.factor_nonzeros > block_diagonal * static_cast<double>(steps.sheet.masses.size());
+    const bool factorised =
+        summary.factor_nonzeros > block_diagonal * static_cast<double>(steps.sheet.masses.size());
     return factorised ? summary.method : "no factor";
   };
-  EXPECT_EQ(settled({.k_stretch = 1, .k_shear = 0.1, .k_bend = 0.05, .h = 1e-3, .nodes = 41}), "no factor");
-  EXPECT_EQ(settled({.k_stretch = 6e6, .k_shear = 0.3, .k_bend = 0.05, .h = 16.7e-3, .nodes = 41}), auto_core_method);
+  EXPECT_EQ(settled({.k_stretch = 1, .k_shear = 0.1, .k_bend = 0.05, .h = 1e-3, .nodes = 41}),
+            "no factor");
+  EXPECT_EQ(settled({.k_stretch = 6e6, .k_shear = 0.3, .k_bend = 0.05, .h = 16.7e-3, .nodes = 41}),
+            auto_core_method);
 }
 
-// The last of twelve solves costs, by the counts, little more than the cheapest of the methods alone would.
+// The last of twelve solves costs, by the counts, little more than the cheapest of the methods
+// alone would.
 TEST(AutoSolver, SettlesNearTheLeastCountedWork) {
   for (const double k_stretch : {6.0, 600.0, 6e4})
     for (const double h : {1e-3, 5e-3}) {
@@ -82,17 +98,20 @@ TEST(AutoSolver, SettlesNearTheLeastCountedWork) {
       LinearSystem system = steps.sheet.with_core(steps.sheet.chosen);
       const SystemSize size = size_of(system);
       double least = 1e300, taken = 1e300;
-      for (const std::string name : {auto_core_method, "upcg:projected_block_diagonal", "upcg:ic0_core", "upcg:ic0", "block_cholesky"}) {
+      for (const std::string name : {auto_core_method, "upcg:projected_block_diagonal",
+                                     "upcg:ic0_core", "upcg:ic0", "block_cholesky"}) {
         std::vector<double> x(steps.x.size());
-        // The guess is last step's solution as in `auto`, no worse: what steps.x holds is this step's.
+        // The guess is last step's solution as in `auto`, no worse: what steps.x holds is this
+        // step's.
         system.guess = steps.sheet.guess;
         const SolveSummary s = make_solver(solver_options(name, 1e-3))->solve(system, x);
         const FactorSize factor{s.factor_nonzeros, s.factor_flops, s.left_out_nonzeros};
-        const MethodWork work = name == auto_core_method                  ? core_work(size, factor)
-                                : name == "upcg:projected_block_diagonal" ? block_diagonal_work(size)
-                                : name == "upcg:ic0_core"                 ? incomplete_work(size, size.core_nonzeros, s.preparations)
-                                : name == "upcg:ic0"                      ? incomplete_work(size, size.nonzeros, s.preparations)
-                                                                          : direct_work(factor);
+        const MethodWork work =
+            name == auto_core_method                  ? core_work(size, factor)
+            : name == "upcg:projected_block_diagonal" ? block_diagonal_work(size)
+            : name == "upcg:ic0_core" ? incomplete_work(size, size.core_nonzeros, s.preparations)
+            : name == "upcg:ic0"      ? incomplete_work(size, size.nonzeros, s.preparations)
+                                      : direct_work(factor);
         const double total = work.total(s.iterations);
         least = std::min(least, total);
         if (name == last.method) taken = work.total(last.iterations);
@@ -101,7 +120,8 @@ TEST(AutoSolver, SettlesNearTheLeastCountedWork) {
     }
 }
 
-// Where stretch springs are so soft that the bound allows some of them to be left out, the paper's core takes fewer iterations.
+// Where stretch springs are so soft that the bound allows some of them to be left out, the paper's
+// core takes fewer iterations.
 TEST(AutoSolver, TakesThePapersCoreWhereItCostsLess) {
   MaterialSheet sheet({.k_stretch = 60, .h = 1e-3, .nodes = 41}, 64);
   sheet.hold_some();
@@ -115,15 +135,19 @@ TEST(AutoSolver, TakesThePapersCoreWhereItCostsLess) {
   ASSERT_TRUE(summary.status.ok()) << summary.status.message;
   EXPECT_EQ(summary.core, CoreUsed::stretch) << summary.method;
   EXPECT_LE(summary.iterations, summary.bound_iterations);
-  const SolveSummary chosen = make_solver(solver_options("core_fast", 1e-6))->solve(sheet.with_core(sheet.chosen), x);
+  const SolveSummary chosen =
+      make_solver(solver_options("core_fast", 1e-6))->solve(sheet.with_core(sheet.chosen), x);
   EXPECT_LT(summary.iterations, chosen.iterations);
   system.stretch_core = {};
   EXPECT_NE(solver->solve(system, x).core, CoreUsed::stretch);
 }
 
-// Where shear and bending are strong, all but bending in the core are enough, and the accuracy is proved.
+// Where shear and bending are strong, all but bending in the core are enough, and the accuracy is
+// proved.
 TEST(AutoSolver, LeavesBendingOutWhereItCostsMost) {
-  MaterialSheet sheet({.k_stretch = 6000, .k_shear = 6000, .k_bend = 50, .h = 16.7e-3, .motion = 0.3, .nodes = 41}, 66);
+  MaterialSheet sheet(
+      {.k_stretch = 6000, .k_shear = 6000, .k_bend = 50, .h = 16.7e-3, .motion = 0.3, .nodes = 41},
+      66);
   sheet.hold_some();
   ASSERT_EQ(std::ranges::count(sheet.chosen, 0), 0);
   LinearSystem system = sheet.with_core(sheet.chosen);
@@ -141,9 +165,11 @@ TEST(AutoSolver, LeavesBendingOutWhereItCostsMost) {
   EXPECT_LE(summary.error_bound, 3.0 * std::sqrt(2.0) * 1e-3);
 }
 
-// Where every spring is strong, a core that leaves some out costs more than all of them: the direct solve, in single precision.
+// Where every spring is strong, a core that leaves some out costs more than all of them: the direct
+// solve, in single precision.
 TEST(AutoSolver, TakesAllSpringsWhereAllAreStrong) {
-  MaterialSheet sheet({.k_stretch = 60, .k_shear = 6e4, .k_bend = 6e3, .h = 3.67e-3, .nodes = 41}, 65);
+  MaterialSheet sheet({.k_stretch = 60, .k_shear = 6e4, .k_bend = 6e3, .h = 3.67e-3, .nodes = 41},
+                      65);
   sheet.hold_some();
   const LinearSystem system = sheet.with_core(sheet.stretch);
   const auto solver = make_solver(solver_options("auto", 1e-3));
@@ -179,14 +205,16 @@ TEST(AutoSolver, RefusesAForeignMemory) {
   const auto solver = make_solver(solver_options("auto", 1e-3));
   EXPECT_THROW(solver->restore_memory(std::vector<double>{99.0, 1.0}), InputError);
   EXPECT_THROW(solver->restore_memory(std::vector<double>{1.0, 1.0, 2.0}), InputError);
-  EXPECT_THROW(make_solver(solver_options("mpcg", 1e-3))->restore_memory(solver->memory()), InputError);
+  EXPECT_THROW(make_solver(solver_options("mpcg", 1e-3))->restore_memory(solver->memory()),
+               InputError);
   EXPECT_NO_THROW(make_solver(solver_options("mpcg", 1e-3))->restore_memory({}));
 }
 
-// Two grids and a node between them, bound to one of each: [1 1 1; 1 1 1; 1 1 1] + I/10, positive definite, but not without its corner, which
-// the core leaves out and its factor has no place for.
+// Two grids and a node between them, bound to one of each: [1 1 1; 1 1 1; 1 1 1] + I/10, positive
+// definite, but not without its corner, which the core leaves out and its factor has no place for.
 TEST(AutoSolver, GoesDirectWhereTheCoreFailsAndRemembersIt) {
-  constexpr Index side = 14, grid = side * side, hub = 2 * grid, first = 3 * side + 2, second = grid + 5 * side + 3;
+  constexpr Index side = 14, grid = side * side, hub = 2 * grid, first = 3 * side + 2,
+                  second = grid + 5 * side + 3;
   std::vector<std::vector<Index>> links(2 * grid + 1);
   for (Index i = 0; i < 2 * grid; ++i) {
     if ((i + 1) % side != 0) links[i].push_back(i + 1), links[i + 1].push_back(i);
@@ -217,7 +245,8 @@ TEST(AutoSolver, GoesDirectWhereTheCoreFailsAndRemembersIt) {
     EXPECT_LT(relative_difference(x, dense(a).llt().solve(as_eigen(b))), 1e-5);
     if (step == 0) {
       EXPECT_EQ(summary.method, "block_cholesky");
-      EXPECT_NE(summary.remark.find(std::string(auto_core_method) + " failed"), std::string::npos) << summary.remark;
+      EXPECT_NE(summary.remark.find(std::string(auto_core_method) + " failed"), std::string::npos)
+          << summary.remark;
     }
   }
 }

@@ -1,5 +1,6 @@
 #pragma once
-// Random constrained systems for the solvers' tests, and their solution by a dense KKT system, which knows neither S nor U:
+// Random constrained systems for the solvers' tests, and their solution by a dense KKT system,
+// which knows neither S nor U:
 //
 //   [A  Cᵀ] [x]   [ b ]
 //   [C  0 ] [λ] = [C z]        C: one row for each prescribed direction, as it was given
@@ -40,7 +41,8 @@ struct ConstrainedCase {
   }
   Eigen::MatrixXd constraint_rows() const {
     Eigen::MatrixXd c = Eigen::MatrixXd::Zero(static_cast<Index>(rows.size()), size());
-    for (std::size_t k = 0; k < rows.size(); ++k) c.block<1, 3>(static_cast<Index>(k), 3 * rows[k].first) = rows[k].second.transpose();
+    for (std::size_t k = 0; k < rows.size(); ++k)
+      c.block<1, 3>(static_cast<Index>(k), 3 * rows[k].first) = rows[k].second.transpose();
     return c;
   }
   Eigen::VectorXd solution() const {
@@ -58,7 +60,8 @@ struct ConstrainedCase {
     Eigen::MatrixXd u = Eigen::MatrixXd::Zero(size(), constraints.free_dofs());
     Index column = 0;
     for (Index i = 0; i < constraints.nodes(); ++i)
-      for (int k = 0; k < constraints.ndof(i); ++k) u.block<3, 1>(3 * i, column++) = constraints.frame(i).col(k);
+      for (int k = 0; k < constraints.ndof(i); ++k)
+        u.block<3, 1>(3 * i, column++) = constraints.frame(i).col(k);
     return u;
   }
 };
@@ -70,12 +73,14 @@ struct CaseOptions {
   double margin = 0.05;  // of diagonal dominance: smaller is worse conditioned
 };
 
-// b, z, guess random and not zero anywhere: z has parts along free directions, which must be ignored.
+// b, z, guess random and not zero anywhere: z has parts along free directions, which must be
+// ignored.
 inline ConstrainedCase random_case(Random& random, const CaseOptions& options) {
   ConstrainedCase c;
   const Index nodes = options.nodes;
   c.a = random_spd(random, make_pattern(random_graph(random, nodes, 3, 12), 3), options.margin);
-  c.b = random.vector(3 * nodes), c.z = random.vector(3 * nodes), c.guess = random.vector(3 * nodes);
+  c.b = random.vector(3 * nodes), c.z = random.vector(3 * nodes),
+  c.guess = random.vector(3 * nodes);
   c.constraints.reset(nodes, options.frames);
   for (Index i = 0; i < nodes; ++i) {
     const int ndof = options.only >= 0 ? options.only : random.below(4);
@@ -94,7 +99,8 @@ inline ConstrainedCase random_case(Random& random, const CaseOptions& options) {
   const BlockPattern& p = *c.a.pattern;
   c.core.resize(static_cast<std::size_t>(p.blocks()));
   for (Index i = 0; i < nodes; ++i)
-    for (Index k = p.row_start[i]; k < p.row_start[i + 1]; ++k) c.core[k] = std::abs(p.column[k] - i) <= 1;
+    for (Index k = p.row_start[i]; k < p.row_start[i + 1]; ++k)
+      c.core[k] = std::abs(p.column[k] - i) <= 1;
   return c;
 }
 
@@ -105,7 +111,8 @@ inline SolverOptions solver_options(const std::string& name, double tolerance) {
   return options;
 }
 
-// "cholmod" or "pardiso" in the programs that repeat the tests for that backend's sake: their main() says it before the tests are listed.
+// "cholmod" or "pardiso" in the programs that repeat the tests for that backend's sake: their
+// main() says it before the tests are listed.
 inline std::string backend_under_test;
 
 // One case each: all solvers of this program, or those that the backend makes.
@@ -113,7 +120,9 @@ inline std::vector<std::string> solvers_to_test() {
   std::vector<std::string> names = solver_names();
   // core_pcg takes CHOLMOD where it is.
   if (!backend_under_test.empty())
-    std::erase_if(names, [](const std::string& name) { return name.find(backend_under_test) == std::string::npos && name != "core_pcg"; });
+    std::erase_if(names, [](const std::string& name) {
+      return name.find(backend_under_test) == std::string::npos && name != "core_pcg";
+    });
   return names;
 }
 

@@ -1,5 +1,6 @@
-// The bound of docs/mathematics.md, 5 on real cloth matrices: λmax(P⁻¹A) <= 2, λmin(P⁻¹A) >= 1/(1+ρ), and with it the number of corePCG's
-// iterations, measured by dense eigenvalues, over stiffnesses, time steps and constraints.
+// The bound of docs/mathematics.md, 5 on real cloth matrices: λmax(P⁻¹A) <= 2, λmin(P⁻¹A) >=
+// 1/(1+ρ), and with it the number of corePCG's iterations, measured by dense eigenvalues, over
+// stiffnesses, time steps and constraints.
 
 #include "taut/core/core_bound.h"
 
@@ -23,16 +24,19 @@ constexpr double node_mass = 9.5e-6;
 struct Setting {
   double k_stretch, k_shear, k_bend, h, k_damp = 0.0;
   std::string describe() const {
-    return "k_stretch " + std::to_string(k_stretch) + ", k_shear " + std::to_string(k_shear) + ", k_bend " + std::to_string(k_bend) +
-           ", h " + std::to_string(h) + ", k_damp " + std::to_string(k_damp);
+    return "k_stretch " + std::to_string(k_stretch) + ", k_shear " + std::to_string(k_shear) +
+           ", k_bend " + std::to_string(k_bend) + ", h " + std::to_string(h) + ", k_damp " +
+           std::to_string(k_damp);
   }
 };
 
-const Setting settings[] = {{60, 0.3, 0.05, 6.67e-3},       {6000, 0.3, 0.05, 3.67e-3}, {6e6, 0.3, 0.05, 3.67e-3},
-                            {6000, 30, 0.05, 3.67e-3},      {6000, 300, 5.0, 16.7e-3},  {600, 0.0, 0.5, 5.55e-3},
+const Setting settings[] = {{60, 0.3, 0.05, 6.67e-3},       {6000, 0.3, 0.05, 3.67e-3},
+                            {6e6, 0.3, 0.05, 3.67e-3},      {6000, 30, 0.05, 3.67e-3},
+                            {6000, 300, 5.0, 16.7e-3},      {600, 0.0, 0.5, 5.55e-3},
                             {600, 0.3, 0.05, 5.55e-3, 1e-3}};
 
-// A sheet of 7 x 6 nodes, crumpled so that springs point anywhere, some stretched, some slack; its matrix, and what the core leaves out.
+// A sheet of 7 x 6 nodes, crumpled so that springs point anywhere, some stretched, some slack; its
+// matrix, and what the core leaves out.
 struct Sheet {
   ConstrainedCase c;
   Eigen::MatrixXd a, p;  // A and P = M + L_C + D_R
@@ -48,7 +52,8 @@ struct Sheet {
     for (Vec3& position : x) position = 1.05 * position + 0.005 * random.direction();
     for (Vec3& velocity : v) velocity = random.direction();
     SpringMaterial material;
-    material.k_stretch = setting.k_stretch, material.k_shear = setting.k_shear, material.k_bend = setting.k_bend;
+    material.k_stretch = setting.k_stretch, material.k_shear = setting.k_shear,
+    material.k_bend = setting.k_bend;
     material.k_damp_stretch = material.k_damp_shear = material.k_damp_bend = setting.k_damp;
     const auto models = grid_springs(shape, rest, material, 0, "sheet");
     std::vector<const ForceModel*> all;
@@ -81,11 +86,13 @@ struct Sheet {
     for (Index i = 0; i < shape.node_count(); ++i) {
       const Mat3 remainder = (a - stretch_only).block<3, 3>(3 * i, 3 * i);
       p.block<3, 3>(3 * i, 3 * i) += remainder;
-      rho_dense = std::max(rho_dense, Eigen::SelfAdjointEigenSolver<Mat3>(remainder).eigenvalues()[2] / node_mass);
+      rho_dense = std::max(
+          rho_dense, Eigen::SelfAdjointEigenSolver<Mat3>(remainder).eigenvalues()[2] / node_mass);
     }
     const Index n = 3 * shape.node_count();
     c.b = random.vector(n), c.z = random.vector(n), c.guess = random.vector(n);
-    // A right-hand side of the size of the guess's residual, as in a simulation that goes on smoothly.
+    // A right-hand side of the size of the guess's residual, as in a simulation that goes on
+    // smoothly.
     for (double& value : c.b) value *= 10.0 * node_mass;
     c.constraints.reset(shape.node_count());
   }
@@ -110,12 +117,15 @@ TEST(CoreBound, RhoIsTheRemaindersShareOfTheMass) {
   }
 }
 
-// A bend spring over a stretch edge (two nodes joined by both) keeps its block: it belongs to the core.
+// A bend spring over a stretch edge (two nodes joined by both) keeps its block: it belongs to the
+// core.
 TEST(CoreBound, SpringWhoseBlockSurvivesIsNotInTheRemainder) {
   const std::vector<Vec3> x{Vec3::Zero(), Vec3(1.2, 0, 0), Vec3(0, 1.3, 0)}, v(3, Vec3::Zero());
-  const SpringModel stretch(ForceClass::stretch, SpringLawKind::linear, {{0, 1, {.rest_length = 1.0, .stiffness = 10.0}}});
+  const SpringModel stretch(ForceClass::stretch, SpringLawKind::linear,
+                            {{0, 1, {.rest_length = 1.0, .stiffness = 10.0}}});
   const SpringModel bend(ForceClass::bend, SpringLawKind::linear,
-                         {{0, 1, {.rest_length = 1.0, .stiffness = 7.0}}, {0, 2, {.rest_length = 1.0, .stiffness = 2.0}}});
+                         {{0, 1, {.rest_length = 1.0, .stiffness = 7.0}},
+                          {0, 2, {.rest_length = 1.0, .stiffness = 2.0}}});
   Assembler assembler(3, {&stretch, &bend}, {true, true});
   BlockCsr a(assembler.pattern());
   std::vector<Vec3> b(3);
@@ -123,10 +133,12 @@ TEST(CoreBound, SpringWhoseBlockSurvivesIsNotInTheRemainder) {
   request.x = x, request.v = v, request.matrix_stiffness = 1.0;
   const std::vector<double> masses(3, 0.5);
   assembler.assemble(std::vector{request, request}, {masses, 1.0, {}, 0.0}, a, b);
-  EXPECT_NEAR(remainder_ratio(a, assembler.core_mask(ForceClass::stretch), masses), 2.0 / 0.5, 1e-5);
+  EXPECT_NEAR(remainder_ratio(a, assembler.core_mask(ForceClass::stretch), masses), 2.0 / 0.5,
+              1e-5);
 }
 
-// Of thousands of rows, several cores at once: the largest eigenvalue of all, and the same bits for any number of threads.
+// Of thousands of rows, several cores at once: the largest eigenvalue of all, and the same bits for
+// any number of threads.
 TEST(CoreBound, FindsTheLargestRowOfMany) {
   Random random(10);
   const SpringGrid grid(random, 60, 50);
@@ -143,7 +155,8 @@ TEST(CoreBound, FindsTheLargestRowOfMany) {
       for (Index k = p.row_start[i]; k < p.row_start[i + 1]; ++k)
         for (Index r = 0; r < 3 && !core[k] && p.column[k] != i; ++r)
           for (Index c = 0; c < 3; ++c) sum(r, c) -= grid.a.block(i, k)[r * p.width(i) + c];
-      largest = std::max(largest, Eigen::SelfAdjointEigenSolver<Mat3>(sum).eigenvalues()[2] / masses[i]);
+      largest =
+          std::max(largest, Eigen::SelfAdjointEigenSolver<Mat3>(sum).eigenvalues()[2] / masses[i]);
     }
     expected.push_back(largest);
   }
@@ -154,7 +167,8 @@ TEST(CoreBound, FindsTheLargestRowOfMany) {
     const std::vector<double> ratios = remainder_ratios(grid.a, cores, masses);
     if (first.empty()) first = ratios;
     EXPECT_EQ(ratios, first) << threads << " threads";
-    for (std::size_t c = 0; c < cores.size(); ++c) EXPECT_EQ(remainder_ratio(grid.a, cores[c], masses), ratios[c]);
+    for (std::size_t c = 0; c < cores.size(); ++c)
+      EXPECT_EQ(remainder_ratio(grid.a, cores[c], masses), ratios[c]);
   }
   set_thread_count(usual);
   for (std::size_t c = 0; c < cores.size(); ++c) {
@@ -173,10 +187,12 @@ TEST(CoreBound, NothingLeftOutIsZero) {
   Random random(6);
   const Sheet sheet(settings[0], random);
   const std::vector<double> masses(static_cast<std::size_t>(sheet.c.a.rows()), node_mass);
-  EXPECT_EQ(remainder_ratio(sheet.c.a, std::vector<std::uint8_t>(sheet.c.core.size(), 1), masses), 0.0);
+  EXPECT_EQ(remainder_ratio(sheet.c.a, std::vector<std::uint8_t>(sheet.c.core.size(), 1), masses),
+            0.0);
 }
 
-// A block outside the core that no spring makes: nothing is claimed, so that core_fast does not take springs out that are none.
+// A block outside the core that no spring makes: nothing is claimed, so that core_fast does not
+// take springs out that are none.
 TEST(CoreBound, IsNotKnownForBlocksThatAreNotSymmetric) {
   Random random(9);
   BlockCsr a = random_spd(random, make_pattern(random_graph(random, 20, 1, 5), 3));
@@ -187,7 +203,8 @@ TEST(CoreBound, IsNotKnownForBlocksThatAreNotSymmetric) {
   EXPECT_EQ(remainder_ratio(a, core, masses), -1.0);
   for (const auto& [i, j] : {std::pair{4, 5}, std::pair{5, 4}})
     for (Index r = 0; r < 3; ++r)
-      for (Index c = 0; c < 3; ++c) a.block(i, a.pattern->find(i, j))[r * a.pattern->width(i) + c] = r == c ? -0.5 : 0.1;
+      for (Index c = 0; c < 3; ++c)
+        a.block(i, a.pattern->find(i, j))[r * a.pattern->width(i) + c] = r == c ? -0.5 : 0.1;
   EXPECT_GT(remainder_ratio(a, core, masses), 0.0);
 }
 
@@ -197,7 +214,8 @@ TEST(CoreBound, PreconditionerIsTheMatrixWithBlocksDeleted) {
     const Sheet sheet(setting, random);
     Reduction core;
     core.update(sheet.c.a, nullptr, sheet.c.core);
-    EXPECT_LT((dense(core.matrix()) - sheet.p).norm(), 1e-12 * sheet.p.norm()) << setting.describe();
+    EXPECT_LT((dense(core.matrix()) - sheet.p).norm(), 1e-12 * sheet.p.norm())
+        << setting.describe();
   }
 }
 
@@ -210,7 +228,8 @@ TEST(CoreBound, HoldsForTheEigenvalues) {
       if (constrained) sheet.constrain(random);
       const Eigen::MatrixXd u = sheet.c.dense_u();
       const Eigen::VectorXd lambda = Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd>(
-                                         u.transpose() * sheet.a * u, u.transpose() * sheet.p * u, Eigen::EigenvaluesOnly | Eigen::Ax_lBx)
+                                         u.transpose() * sheet.a * u, u.transpose() * sheet.p * u,
+                                         Eigen::EigenvaluesOnly | Eigen::Ax_lBx)
                                          .eigenvalues();
       const double rounding = 1e-9;
       EXPECT_LE(lambda.maxCoeff(), 2.0 + rounding);
@@ -241,7 +260,8 @@ TEST(CoreBound, HoldsForTheIterations) {
         std::vector<double> x(sheet.c.b.size());
         LinearSystem system = sheet.c.system();
         system.rho = sheet.rho;
-        const SolveSummary summary = make_solver(solver_options("core_pcg", tolerance))->solve(system, x);
+        const SolveSummary summary =
+            make_solver(solver_options("core_pcg", tolerance))->solve(system, x);
         ASSERT_TRUE(summary.status.ok()) << summary.status.message;
         const int bound = core_iteration_bound(sheet.rho, summary.start_value, tolerance);
         EXPECT_EQ(summary.bound_iterations, bound);
@@ -261,7 +281,8 @@ TEST(CoreBound, IterationsDoNotGrowWithTheStretchStiffness) {
     Random random(5);
     const Sheet sheet({k_stretch, 0.3, 0.05, 3.67e-3}, random);
     std::vector<double> x(sheet.c.b.size());
-    iterations.push_back(make_solver(solver_options("core_pcg", 1e-3))->solve(sheet.c.system(), x).iterations);
+    iterations.push_back(
+        make_solver(solver_options("core_pcg", 1e-3))->solve(sheet.c.system(), x).iterations);
   }
   for (const int count : iterations) {
     EXPECT_GE(count, 2);

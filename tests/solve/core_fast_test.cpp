@@ -1,19 +1,21 @@
-// core_fast takes core_pcg's steps, whatever the constraints; it goes to double precision by itself, and says so.
+// core_fast takes core_pcg's steps, whatever the constraints; it goes to double precision by
+// itself, and says so.
 
 #include <gtest/gtest.h>
 
 #include "linalg/spring_grid.h"
 #include "solve/constrained_case.h"
 #include "solve/material_sheet.h"
-#include "taut/linalg/block_cholesky.h"
 #include "taut/core/block_remainder.h"
 #include "taut/core/core_bound.h"
+#include "taut/linalg/block_cholesky.h"
 #include "taut/solve/reference.h"
 
 namespace taut::test {
 namespace {
 
-// The blocks that core_fast makes its core of: those asked for and those that have a place in their factor.
+// The blocks that core_fast makes its core of: those asked for and those that have a place in their
+// factor.
 std::vector<std::uint8_t> core_with_fill(const ConstrainedCase& c) {
   BlockCholesky factor(CholeskyPrecision::single_precision);
   EXPECT_TRUE(factor.analyze(c.a.pattern, c.core, BlocksLeftOut::without_place).ok());
@@ -38,7 +40,8 @@ TEST(CoreFast, TakesTheStepsOfCorePcg) {
       // Last step's x is not looked at; an iterate is where it goes on.
       same.guess = from_rest ? std::span<const double>() : system.guess;
       system.guess_is_iterate = !from_rest;
-      const SolveSummary slow = make_solver(solver_options("core_pcg:eigen", 1e-4))->solve(same, expected);
+      const SolveSummary slow =
+          make_solver(solver_options("core_pcg:eigen", 1e-4))->solve(same, expected);
       const SolveSummary fast = make_solver(solver_options("core_fast", 1e-4))->solve(system, x);
       ASSERT_TRUE(fast.status.ok()) << fast.status.message;
       EXPECT_EQ(fast.iterations, slow.iterations);
@@ -63,8 +66,9 @@ std::vector<double> affine_motion(const MaterialSheet& sheet) {
   return x;
 }
 
-// Where ρ is known the springs outside the core are taken out of it altogether, or parallelograms stand in for them: the same conjugate
-// gradients as on a dense matrix made so; its eigenvalues within their bounds.
+// Where ρ is known the springs outside the core are taken out of it altogether, or parallelograms
+// stand in for them: the same conjugate gradients as on a dense matrix made so; its eigenvalues
+// within their bounds.
 class CoreFastSteps : public testing::TestWithParam<bool> {};
 INSTANTIATE_TEST_SUITE_P(Replaced, CoreFastSteps, testing::Bool());
 TEST_P(CoreFastSteps, AreThoseOfTheSpringsInTheCore) {
@@ -72,7 +76,12 @@ TEST_P(CoreFastSteps, AreThoseOfTheSpringsInTheCore) {
   double smallest = 1.0;
   for (const double k_stretch : {60.0, 6e3, 6e5})
     for (const double k_shear : {0.3, 30.0, 600.0}) {
-      MaterialSheet sheet({.k_stretch = k_stretch, .k_shear = k_shear, .k_bend = k_shear / 10, .h = 10e-3, .nodes = 9}, ++seed);
+      MaterialSheet sheet({.k_stretch = k_stretch,
+                           .k_shear = k_shear,
+                           .k_bend = k_shear / 10,
+                           .h = 10e-3,
+                           .nodes = 9},
+                          ++seed);
       sheet.hold_some();
       SCOPED_TRACE(sheet.material.describe());
       sheet.core = sheet.stretch;
@@ -81,22 +90,27 @@ TEST_P(CoreFastSteps, AreThoseOfTheSpringsInTheCore) {
       system.masses = sheet.masses;
       if (GetParam()) system.last = smooth;
       const Eigen::MatrixXd all = dense(sheet.a);
-      // Known, so that products from the factor are trusted as far as rounding allows: the same directions, to its size.
+      // Known, so that products from the factor are trusted as far as rounding allows: the same
+      // directions, to its size.
       for (Index i = 0; i < sheet.a.rows(); ++i) {
         const Mat3 block = all.block<3, 3>(3 * i, 3 * i);
-        system.stiffness = std::max(system.stiffness, block.operatorNorm() / sheet.masses[static_cast<std::size_t>(i)]);
+        system.stiffness = std::max(
+            system.stiffness, block.operatorNorm() / sheet.masses[static_cast<std::size_t>(i)]);
       }
       const double rounding = 4.0 * 0x1p-24 * std::sqrt(1.0 + system.stiffness);
       BlockCholesky same_core(CholeskyPrecision::single_precision);
-      ASSERT_TRUE(same_core.analyze(sheet.a.pattern, sheet.stretch, BlocksLeftOut::without_place).ok());
+      ASSERT_TRUE(
+          same_core.analyze(sheet.a.pattern, sheet.stretch, BlocksLeftOut::without_place).ok());
       const auto parallelograms = same_core.parallelograms();
       ASSERT_FALSE(parallelograms.empty());
       const Eigen::MatrixXd p =
-          dense_core(sheet.a, same_core.analyzed_blocks(), GetParam() ? parallelograms : std::span<const Parallelogram>());
+          dense_core(sheet.a, same_core.analyzed_blocks(),
+                     GetParam() ? parallelograms : std::span<const Parallelogram>());
       const Eigen::MatrixXd u = sheet.dense_u(), a = u.transpose() * dense(sheet.a) * u;
       const Eigen::LLT<Eigen::MatrixXd> factor(u.transpose() * p * u);
       ASSERT_EQ(factor.info(), Eigen::Success);
-      Eigen::VectorXd r = u.transpose() * (as_eigen(sheet.b) - dense(sheet.a) * as_eigen(sheet.z)), c = Eigen::VectorXd::Zero(r.size());
+      Eigen::VectorXd r = u.transpose() * (as_eigen(sheet.b) - dense(sheet.a) * as_eigen(sheet.z)),
+                      c = Eigen::VectorXd::Zero(r.size());
       const double delta0 = r.dot(factor.solve(r));
       double delta = delta0, last = 0.0;
       std::vector<double> stops;
@@ -112,7 +126,8 @@ TEST_P(CoreFastSteps, AreThoseOfTheSpringsInTheCore) {
       const SolveSummary summary = solver->solve(system, x);
       ASSERT_TRUE(summary.status.ok()) << summary.status.message;
       ASSERT_GE(seen.size(), stops.size());
-      for (std::size_t k = 0; k < stops.size(); ++k) EXPECT_NEAR(seen[k], stops[k], 0.05 * stops[k] + 1e-6 + rounding) << k;
+      for (std::size_t k = 0; k < stops.size(); ++k)
+        EXPECT_NEAR(seen[k], stops[k], 0.05 * stops[k] + 1e-6 + rounding) << k;
 
       EXPECT_EQ(summary.replaced, GetParam());
       BlockRemainder remainder;
@@ -120,7 +135,9 @@ TEST_P(CoreFastSteps, AreThoseOfTheSpringsInTheCore) {
       remainder.set_replaced(GetParam());
       remainder.update(sheet.a);
       const BlockRemainder::Ratios ratios = remainder.ratios(sheet.masses);
-      const Eigen::VectorXd eigenvalues = Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd>(a, u.transpose() * p * u).eigenvalues();
+      const Eigen::VectorXd eigenvalues =
+          Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd>(a, u.transpose() * p * u)
+              .eigenvalues();
       EXPECT_GE(eigenvalues.minCoeff() * (1.0 + 4.0 * ratios.replaced), 1.0 - 1e-6);
       EXPECT_LE(eigenvalues.maxCoeff(), 1.0 + 2.0 * ratios.dropped + 1e-6);
       EXPECT_LE(summary.iterations, summary.bound_iterations);
@@ -129,7 +146,8 @@ TEST_P(CoreFastSteps, AreThoseOfTheSpringsInTheCore) {
   EXPECT_EQ(smallest < 0.5, GetParam()) << smallest;
 }
 
-// Parallelograms are better for what is smooth: it goes by last step's x. Without it, or the masses that the bound is made with, never.
+// Parallelograms are better for what is smooth: it goes by last step's x. Without it, or the masses
+// that the bound is made with, never.
 TEST(CoreFast, ReplacesSpringsWhereMotionIsSmooth) {
   MaterialSheet sheet({.k_stretch = 60.0, .k_shear = 30.0, .motion = 0.0}, 5);
   sheet.hold_some();
@@ -164,7 +182,12 @@ TEST(CoreFast, ProvesItsError) {
   for (const double h : {1e-3, 10e-3, 33e-3})
     for (const double k_stretch : {60.0, 6e3, 6e6})
       for (const double k_shear : {0.3, 600.0}) {
-        MaterialSheet sheet({.k_stretch = k_stretch, .k_shear = k_shear, .k_bend = k_shear / 10, .h = h, .graded = seed % 2 == 0}, ++seed);
+        MaterialSheet sheet({.k_stretch = k_stretch,
+                             .k_shear = k_shear,
+                             .k_bend = k_shear / 10,
+                             .h = h,
+                             .graded = seed % 2 == 0},
+                            ++seed);
         sheet.hold_some();
         SCOPED_TRACE(sheet.material.describe());
         const std::vector<std::uint8_t>& core = seed % 3 == 0 ? sheet.unbent : sheet.stretch;
@@ -178,9 +201,11 @@ TEST(CoreFast, ProvesItsError) {
           const SolveSummary summary = solver->solve(system, x);
           ASSERT_TRUE(summary.status.ok()) << summary.status.message;
           EXPECT_EQ(summary.replaced, replaced && &core == &sheet.stretch);
-          EXPECT_LE(anorm_error(system, x, reference_solution(system)), summary.error_bound * 1.01 + 1e-5);
+          EXPECT_LE(anorm_error(system, x, reference_solution(system)),
+                    summary.error_bound * 1.01 + 1e-5);
           if (!summary.replaced) {
-            EXPECT_LE(summary.error_bound, std::sqrt(1.0 + 2.0 * system.rho) * 1.01 * summary.stop_value + 1e-5);
+            EXPECT_LE(summary.error_bound,
+                      std::sqrt(1.0 + 2.0 * system.rho) * 1.01 * summary.stop_value + 1e-5);
           }
           EXPECT_LE(summary.iterations, summary.bound_iterations);
         }
@@ -196,7 +221,9 @@ TEST(CoreFast, LumpsNothingWhereThatFails) {
   for (Index i = 0; i < p.rows(); ++i) most = std::max(most, p.row_start[i + 1] - p.row_start[i]);
   // The diagonal is less than what is left out of the longest row.
   for_each_entry(c.a, [&](Index row, Index column, double& value) {
-    value = row == column ? 0.999 * (most - 1) : row / 3 != column / 3 && row % 3 == column % 3 ? -1.0 : 0.0;
+    value = row == column                                    ? 0.999 * (most - 1)
+            : row / 3 != column / 3 && row % 3 == column % 3 ? -1.0
+                                                             : 0.0;
   });
   c.core.assign(static_cast<std::size_t>(p.blocks()), 0);
   LinearSystem system = c.system();
@@ -212,7 +239,8 @@ TEST(CoreFast, LumpsNothingWhereThatFails) {
   EXPECT_LT(relative_difference(x, expected), 1e-6);
 }
 
-// Single precision loses digits to the stiffness; the true residual, looked at on the way, brings them back.
+// Single precision loses digits to the stiffness; the true residual, looked at on the way, brings
+// them back.
 TEST(CoreFast, IsAsExactAsAskedForAtAnyStiffness) {
   const auto expect_exact = [](Material material, double tolerance, bool stiffness_is_known) {
     MaterialSheet sheet(material, 7);
@@ -222,26 +250,32 @@ TEST(CoreFast, IsAsExactAsAskedForAtAnyStiffness) {
     LinearSystem system = sheet.with_core(sheet.stretch);
     if (stiffness_is_known) system.stiffness = 0.5 * block_diagonal_condition(*system.matrix) - 1.0;
     std::vector<double> x(sheet.b.size());
-    const SolveSummary summary = make_solver(solver_options("core_fast", tolerance))->solve(system, x);
+    const SolveSummary summary =
+        make_solver(solver_options("core_fast", tolerance))->solve(system, x);
     ASSERT_TRUE(summary.status.ok()) << summary.status.message;
-    // The stop test's norm and A's differ by the root of the condition that the core leaves, at most; and nothing is more exact than the
-    // same method in double precision throughout.
+    // The stop test's norm and A's differ by the root of the condition that the core leaves, at
+    // most; and nothing is more exact than the same method in double precision throughout.
     const std::vector<double> exact = reference_solution(system);
     double bound = std::sqrt(2.0 * (1.0 + system.rho)) * tolerance;
     const double error = anorm_error(system, x, exact);
     if (error >= bound) {
-      ASSERT_TRUE(make_solver(solver_options("core_pcg:block", tolerance))->solve(system, x).status.ok());
+      ASSERT_TRUE(
+          make_solver(solver_options("core_pcg:block", tolerance))->solve(system, x).status.ok());
       bound = std::max(bound, 2.0 * anorm_error(system, x, exact));
     }
-    EXPECT_LT(error, bound) << material.describe() << (material.askew ? ", flat and askew" : "") << ", tolerance " << tolerance;
+    EXPECT_LT(error, bound) << material.describe() << (material.askew ? ", flat and askew" : "")
+                            << ", tolerance " << tolerance;
     EXPECT_LE(summary.iterations, summary.bound_iterations);
   };
   for (const double k_stretch : {60.0, 6e3, 6e5, 6e7})
     for (const double tolerance : {1e-3, 1e-6, 1e-10})
       for (const bool stiffness_is_known : {true, false}) {
         expect_exact({.k_stretch = k_stretch, .nodes = 31}, tolerance, stiffness_is_known);
-        // At rest: nothing but the masses and soft springs resists across, where rounded stretch springs do.
-        expect_exact({.k_stretch = k_stretch, .motion = 0.0, .stretch = 1.0, .askew = true, .nodes = 31}, tolerance, stiffness_is_known);
+        // At rest: nothing but the masses and soft springs resists across, where rounded stretch
+        // springs do.
+        expect_exact(
+            {.k_stretch = k_stretch, .motion = 0.0, .stretch = 1.0, .askew = true, .nodes = 31},
+            tolerance, stiffness_is_known);
       }
 }
 
@@ -282,8 +316,9 @@ TEST(CoreFast, FallsBackToDoubleWhenSingleOverflows) {
   EXPECT_LT(relative_difference(x, expected), 1e-6);
 }
 
-// Many stiff chains whose rigid motions only the masses hold: rounded to single precision the core loses these masses, so that a pivot
-// fails or each chain's rigid motion gets an energy of its own, by chance.
+// Many stiff chains whose rigid motions only the masses hold: rounded to single precision the core
+// loses these masses, so that a pivot fails or each chain's rigid motion gets an energy of its own,
+// by chance.
 TEST(CoreFast, FallsBackToDoubleWhereSinglePrecisionLosesTheMasses) {
   Random random(4);
   constexpr Index nodes = 400, length = 5;
@@ -295,7 +330,8 @@ TEST(CoreFast, FallsBackToDoubleWhereSinglePrecisionLosesTheMasses) {
   for_each_entry(c.a, [&](Index row, Index column, double& value) {
     const Index i = row / 3;
     const double stiffness = 1e9 * (1.0 + 0.37 * (i / length));
-    if (row == column) value = 1.0 + stiffness * (i % length == 0 || i % length == length - 1 ? 1.0 : 2.0);
+    if (row == column)
+      value = 1.0 + stiffness * (i % length == 0 || i % length == length - 1 ? 1.0 : 2.0);
     if (row != column && row % 3 == column % 3) value = -stiffness;
   });
   c.b = random.vector(3 * nodes), c.z.assign(c.b.size(), 0.0);
@@ -323,7 +359,8 @@ TEST(CoreFast, BeginsInDoubleWhereSinglePrecisionWouldFail) {
     EXPECT_STREQ(summary.precision, k_stretch > 1e6 ? "double" : "single");
     EXPECT_EQ(summary.fallbacks, 0) << summary.remark;
     EXPECT_LE(summary.iterations, summary.bound_iterations);
-    EXPECT_LE(anorm_error(system, x, reference_solution(system)), summary.error_bound * 1.01 + 1e-9);
+    EXPECT_LE(anorm_error(system, x, reference_solution(system)),
+              summary.error_bound * 1.01 + 1e-9);
   }
 }
 

@@ -1,5 +1,5 @@
-// Whole solves give the same bits for any number of threads: long strips of cloth-like coupling, so that all loops are split and factors
-// stay small.
+// Whole solves give the same bits for any number of threads: long strips of cloth-like coupling, so
+// that all loops are split and factors stay small.
 
 #include <gtest/gtest.h>
 
@@ -26,7 +26,8 @@ const ConstrainedCase& strip() {
     ConstrainedCase c;
     constexpr Index nodes = 6'000;
     c.a = random_spd(random, make_pattern(random_graph(random, nodes, 2, 3), 3), 0.05);
-    c.b = random.vector(3 * nodes), c.z = random.vector(3 * nodes), c.guess = random.vector(3 * nodes);
+    c.b = random.vector(3 * nodes), c.z = random.vector(3 * nodes),
+    c.guess = random.vector(3 * nodes);
     c.constraints.reset(nodes);
     for (Index i = 0; i < nodes; i += 7) {
       if (i % 3 == 0)
@@ -42,7 +43,8 @@ const ConstrainedCase& strip() {
 TEST_P(Determinism, SameBitsForAnyNumberOfThreads) {
   const ConstrainedCase& c = strip();
   for (const std::string reordering : {"vectors", "matrix"}) {
-    if (reordering == "matrix" && !GetParam().starts_with("core_pcg")) continue;  // the only one that has two
+    // the only one that has two
+    if (reordering == "matrix" && !GetParam().starts_with("core_pcg")) continue;
     SolverOptions options = solver_options(GetParam(), 1e-5);
     options.reordering = reordering;
     std::vector<double> expected;
@@ -51,7 +53,8 @@ TEST_P(Determinism, SameBitsForAnyNumberOfThreads) {
       std::vector<double> x(c.b.size());
       const SolveSummary summary = make_solver(options)->solve(c.system(), x);
       ASSERT_TRUE(summary.status.ok()) << summary.status.message;
-      x.push_back(summary.iterations), x.push_back(summary.relative_residual), x.push_back(summary.stop_value);
+      x.push_back(summary.iterations), x.push_back(summary.relative_residual),
+          x.push_back(summary.stop_value);
       if (threads == 1) expected = x;
       EXPECT_EQ(x, expected) << threads << " threads";
     }

@@ -1,4 +1,5 @@
-// Systems with nothing to solve, and systems that cannot be solved: reported by every solver, never a crash and never silently wrong.
+// Systems with nothing to solve, and systems that cannot be solved: reported by every solver, never
+// a crash and never silently wrong.
 
 #include <gtest/gtest.h>
 
@@ -17,19 +18,23 @@ class EdgeCase : public testing::TestWithParam<std::string> {
     x.assign(c.b.size(), 1e300);
     return make_solver(solver_options(GetParam(), 1e-10))->solve(c.system(), x);
   }
-  // Not ok, and x is S guess + (I-S) z or some iterate: finite, and as prescribed where it is prescribed.
+  // Not ok, and x is S guess + (I-S) z or some iterate: finite, and as prescribed where it is
+  // prescribed.
   void expect_refused(const ConstrainedCase& c, std::initializer_list<Outcome> allowed) {
     std::vector<double> x;
     const SolveSummary summary = solve(c, x);
-    EXPECT_EQ(std::ranges::count(allowed, summary.status.outcome), 1) << name_of(summary.status.outcome) << ": " << summary.status.message;
+    EXPECT_EQ(std::ranges::count(allowed, summary.status.outcome), 1)
+        << name_of(summary.status.outcome) << ": " << summary.status.message;
     EXPECT_FALSE(summary.status.message.empty());
     EXPECT_TRUE(as_eigen(x).allFinite());
-    EXPECT_LT((c.constraint_rows() * (as_eigen(x) - as_eigen(c.z))).norm(), 1e-8 * (1.0 + as_eigen(x).norm()));
+    EXPECT_LT((c.constraint_rows() * (as_eigen(x) - as_eigen(c.z))).norm(),
+              1e-8 * (1.0 + as_eigen(x).norm()));
   }
   Random random_{1};
 };
 
-INSTANTIATE_TEST_SUITE_P(All, EdgeCase, testing::ValuesIn(solvers_to_test()), [](const auto& solver) { return test_name(solver.param); });
+INSTANTIATE_TEST_SUITE_P(All, EdgeCase, testing::ValuesIn(solvers_to_test()),
+                         [](const auto& solver) { return test_name(solver.param); });
 
 TEST_P(EdgeCase, AllNodesFixed) {
   ConstrainedCase c = random_case(random_, {.nodes = 10, .only = 0});
@@ -49,9 +54,11 @@ TEST_P(EdgeCase, NothingDrives) {
   c.b.assign(c.b.size(), 0.0);
   // z only along free directions, where it does not count, or nowhere.
   for (const bool garbage : {false, true}) {
-    const Eigen::VectorXd z = garbage ? Eigen::VectorXd(c.projection() * as_eigen(c.guess)) : Eigen::VectorXd::Zero(c.size());
+    const Eigen::VectorXd z = garbage ? Eigen::VectorXd(c.projection() * as_eigen(c.guess))
+                                      : Eigen::VectorXd::Zero(c.size());
     c.z.assign(z.begin(), z.end());
-    if (garbage) c.guess.clear();  // what is left of z is rounding: no guess of size 1 comes within 1e-10 of that
+    // what is left of z is rounding: no guess of size 1 comes within 1e-10 of that
+    if (garbage) c.guess.clear();
     std::vector<double> x;
     const SolveSummary summary = solve(c, x);
     EXPECT_TRUE(summary.status.ok()) << summary.status.message;
@@ -82,14 +89,17 @@ TEST_P(EdgeCase, NegativeMassIsReported) {
   expect_refused(c, {Outcome::not_positive_definite});
 }
 
-// Its diagonal blocks are positive definite, it is not. BiCGSTAB needs no definiteness: it may solve this, and then rightly.
+// Its diagonal blocks are positive definite, it is not. BiCGSTAB needs no definiteness: it may
+// solve this, and then rightly.
 TEST_P(EdgeCase, IndefiniteMatrixIsReported) {
   ConstrainedCase c = random_case(random_, {.nodes = 20});
   for_each_entry(c.a, [](Index row, Index column, double& value) {
     if (row / 3 != column / 3) value *= 8.0;
   });
   const Eigen::MatrixXd u = c.dense_u();
-  ASSERT_LT((u.transpose() * dense(c.a) * u).selfadjointView<Eigen::Lower>().eigenvalues().minCoeff(), -1.0);
+  ASSERT_LT(
+      (u.transpose() * dense(c.a) * u).selfadjointView<Eigen::Lower>().eigenvalues().minCoeff(),
+      -1.0);
   if (!GetParam().starts_with("eq10")) return expect_refused(c, {Outcome::not_positive_definite});
   std::vector<double> x;
   if (solve(c, x).status.ok()) {
@@ -128,7 +138,9 @@ TEST_P(EdgeCase, IterationLimitIsReported) {
   options.max_iterations = 2;
   const auto solver = make_solver(options);
   int calls = 0;
-  solver->observer = [&](int iteration, double, std::span<const double>) { EXPECT_EQ(iteration, ++calls); };
+  solver->observer = [&](int iteration, double, std::span<const double>) {
+    EXPECT_EQ(iteration, ++calls);
+  };
   std::vector<double> x(c.b.size());
   const SolveSummary summary = solver->solve(c.system(), x);
   if (GetParam() == "auto") {  // it has something to fall back on
@@ -155,7 +167,9 @@ std::string refusal(const std::string& name) {
   return "made";
 }
 
-bool says(const std::string& message, const std::string& part) { return message.find(part) != std::string::npos; }
+bool says(const std::string& message, const std::string& part) {
+  return message.find(part) != std::string::npos;
+}
 
 TEST(UnknownSolver, ListsTheNamesAndSuggestsOne) {
   const std::string message = refusal("core_pgc");
@@ -194,7 +208,8 @@ TEST(UnknownSolver, SaysWhatIsNotBuiltIn) {
   EXPECT_EQ(says(summary.remark, "Eigen"), !built_in) << summary.remark;
 }
 
-// A chain that nothing holds: singular, but rounding leaves a last pivot that may be a little above zero.
+// A chain that nothing holds: singular, but rounding leaves a last pivot that may be a little above
+// zero.
 TEST(SingularMatrix, IsNotSolvedByADirectMethod) {
   BlockCsr a(make_pattern({{1}, {0, 2}, {1}}, 1));
   const double k[] = {0.1, 0.2};
@@ -205,11 +220,13 @@ TEST(SingularMatrix, IsNotSolvedByADirectMethod) {
   LinearSystem system;
   system.matrix = &a, system.rhs = b;
   for (const std::string& name : solver_names()) {
-    if (name.starts_with("cholmod") || name == "pardiso" || name == "eigen_ldlt" || name == "block_cholesky" || name == "auto") {
+    if (name.starts_with("cholmod") || name == "pardiso" || name == "eigen_ldlt" ||
+        name == "block_cholesky" || name == "auto") {
       std::vector<double> x(3);
       const SolveSummary summary = make_solver(solver_options(name, 1e-6))->solve(system, x);
       // As it is stored the matrix may have an inverse, of 1e16.
-      EXPECT_TRUE(!summary.status.ok() || summary.relative_residual < 1e-2) << name << " leaves " << summary.relative_residual;
+      EXPECT_TRUE(!summary.status.ok() || summary.relative_residual < 1e-2)
+          << name << " leaves " << summary.relative_residual;
       EXPECT_EQ(summary.status.ok(), summary.status.message.empty()) << name;
     }
   }

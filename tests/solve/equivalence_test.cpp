@@ -1,5 +1,6 @@
-// What the methods have in common: MPCG takes uPCG's steps, the choice of U matters to a scalar diagonal only, and Eq. 10, the pre-filtered
-// form and the direct solution are the same solution (docs/mathematics.md, 3).
+// What the methods have in common: MPCG takes uPCG's steps, the choice of U matters to a scalar
+// diagonal only, and Eq. 10, the pre-filtered form and the direct solution are the same solution
+// (docs/mathematics.md, 3).
 
 #include <gtest/gtest.h>
 
@@ -30,7 +31,9 @@ History solved(const ConstrainedCase& c, const SolverOptions& options) {
   return result;
 }
 
-History solved(const ConstrainedCase& c, const std::string& name, double tolerance) { return solved(c, solver_options(name, tolerance)); }
+History solved(const ConstrainedCase& c, const std::string& name, double tolerance) {
+  return solved(c, solver_options(name, tolerance));
+}
 
 // Largest relative difference of iterates of the same number.
 double largest_difference(const History& a, const History& b) {
@@ -50,17 +53,20 @@ TEST(MpcgAndUpcg, AgreeIterationByIteration) {
     for (const FrameChoice frames : {FrameChoice::duff, FrameChoice::paper_eq13})
       for (std::uint32_t seed = 1; seed <= 4; ++seed) {
         const ConstrainedCase c = stiff_case(seed, frames);
-        const History mpcg = solved(c, "mpcg:" + variant, 1e-6), upcg = solved(c, "upcg:" + variant, 1e-6);
+        const History mpcg = solved(c, "mpcg:" + variant, 1e-6),
+                      upcg = solved(c, "upcg:" + variant, 1e-6);
         EXPECT_EQ(mpcg.summary.iterations, upcg.summary.iterations);
         EXPECT_GT(mpcg.summary.iterations, 8);
         EXPECT_LT(largest_difference(mpcg, upcg), 1e-9);
-        EXPECT_NEAR(mpcg.summary.start_value, upcg.summary.start_value, 1e-10 * upcg.summary.start_value);
+        EXPECT_NEAR(mpcg.summary.start_value, upcg.summary.start_value,
+                    1e-10 * upcg.summary.start_value);
         for (std::size_t k = 0; k < std::min(mpcg.values.size(), upcg.values.size()); ++k)
           EXPECT_NEAR(mpcg.values[k], upcg.values[k], 1e-6 * upcg.values[k]);
       }
 }
 
-void expect_same_iterates(const ConstrainedCase& c, const std::string& one, const std::string& other) {
+void expect_same_iterates(const ConstrainedCase& c, const std::string& one,
+                          const std::string& other) {
   SCOPED_TRACE(one + ", " + other);
   const History a = solved(c, one, 1e-6), b = solved(c, other, 1e-6);
   EXPECT_EQ(a.summary.iterations, b.summary.iterations);
@@ -68,8 +74,8 @@ void expect_same_iterates(const ConstrainedCase& c, const std::string& one, cons
   EXPECT_LT(largest_difference(a, b), 1e-9);
 }
 
-// The pre-filtered form with its own diagonal blocks is uPCG with the blocks of Ã, in the larger space; and so with every block-wise preconditioner
-// of S A S + d (I-S), in MPCG too.
+// The pre-filtered form with its own diagonal blocks is uPCG with the blocks of Ã, in the larger
+// space; and so with every block-wise preconditioner of S A S + d (I-S), in MPCG too.
 TEST(BlockwisePreconditioners, AreTheSameInEveryForm) {
   for (const FrameChoice frames : {FrameChoice::duff, FrameChoice::paper_eq13})
     for (std::uint32_t seed = 1; seed <= 4; ++seed) {
@@ -77,14 +83,16 @@ TEST(BlockwisePreconditioners, AreTheSameInEveryForm) {
       expect_same_iterates(c, "ppcg", "upcg:projected_block_diagonal");
       expect_same_iterates(c, "mpcg:projected_block_diagonal", "upcg:projected_block_diagonal");
       for (const std::string kind : {"ic0", "ic0_core", "ssor"})
-        for (const std::string form : {"mpcg:", "ppcg:"}) expect_same_iterates(c, form + kind, "upcg:" + kind);
+        for (const std::string form : {"mpcg:", "ppcg:"})
+          expect_same_iterates(c, form + kind, "upcg:" + kind);
     }
 }
 
 // Of the pattern's subsets, the core with all blocks is the matrix, with none its block diagonal.
 TEST(IncompleteCholeskyOfTheCore, BetweenWholeAndBlockDiagonal) {
   ConstrainedCase c = stiff_case(5);
-  EXPECT_GT(largest_difference(solved(c, "upcg:ic0_core", 1e-6), solved(c, "upcg:ic0", 1e-6)), 1e-4);
+  EXPECT_GT(largest_difference(solved(c, "upcg:ic0_core", 1e-6), solved(c, "upcg:ic0", 1e-6)),
+            1e-4);
   c.core.assign(c.core.size(), 1);
   expect_same_iterates(c, "upcg:ic0_core", "upcg:ic0");
   c.core.clear();
@@ -93,10 +101,12 @@ TEST(IncompleteCholeskyOfTheCore, BetweenWholeAndBlockDiagonal) {
 
 // The test case's core is a chain: its incomplete factor is complete.
 TEST(IncompleteCholeskyOfTheCore, OfAChainIsCorePcg) {
-  for (std::uint32_t seed = 1; seed <= 3; ++seed) expect_same_iterates(stiff_case(seed), "upcg:ic0_core", "core_pcg:eigen");
+  for (std::uint32_t seed = 1; seed <= 3; ++seed)
+    expect_same_iterates(stiff_case(seed), "upcg:ic0_core", "core_pcg:eigen");
 }
 
-// Positive definite, but IC(0) breaks down on it: the shift is found, told, and the solution found with it.
+// Positive definite, but IC(0) breaks down on it: the shift is found, told, and the solution found
+// with it.
 TEST(IncompleteCholesky, TellsItsShift) {
   // Kershaw's matrix (1978) in each of three directions; one node held in one of them.
   ConstrainedCase c;
@@ -128,7 +138,9 @@ TEST(Ssor, TakesItsFactorFromTheOptions) {
 
 Eigen::VectorXd reduced_eigenvalues(const ConstrainedCase& c) {
   const Eigen::MatrixXd u = c.dense_u();
-  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(u.transpose() * dense(c.a) * u, Eigen::EigenvaluesOnly).eigenvalues();
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(u.transpose() * dense(c.a) * u,
+                                                        Eigen::EigenvaluesOnly)
+      .eigenvalues();
 }
 
 TEST(ChoiceOfU, LeavesTheConditionNumberAlone) {
@@ -142,9 +154,12 @@ TEST(ChoiceOfU, LeavesTheConditionNumberAlone) {
 
 TEST(ChoiceOfU, IsSeenByTheReducedScalarDiagonalOnly) {
   const ConstrainedCase duff = stiff_case(1), eq13 = stiff_case(1, FrameChoice::paper_eq13);
-  const auto difference = [&](const std::string& name) { return largest_difference(solved(duff, name, 1e-6), solved(eq13, name, 1e-6)); };
-  for (const std::string name : {"mpcg:diagonal", "mpcg:block_diagonal", "upcg:diagonal", "upcg:block_diagonal",
-                                 "upcg:projected_block_diagonal", "ppcg", "upcg:ic0", "upcg:ic0_core", "upcg:ssor"})
+  const auto difference = [&](const std::string& name) {
+    return largest_difference(solved(duff, name, 1e-6), solved(eq13, name, 1e-6));
+  };
+  for (const std::string name :
+       {"mpcg:diagonal", "mpcg:block_diagonal", "upcg:diagonal", "upcg:block_diagonal",
+        "upcg:projected_block_diagonal", "ppcg", "upcg:ic0", "upcg:ic0_core", "upcg:ssor"})
     EXPECT_LT(difference(name), 1e-9) << name;
   EXPECT_GT(difference("upcg:reduced_diagonal"), 1e-5);
 }
@@ -152,7 +167,9 @@ TEST(ChoiceOfU, IsSeenByTheReducedScalarDiagonalOnly) {
 TEST(ChoiceOfU, DiagonalsDiffer) {
   // uPCG with Uᵀ diag(A)⁻¹ U and with diag(Ã)⁻¹ are two methods, though both are called diagonal.
   const ConstrainedCase c = stiff_case(2);
-  EXPECT_GT(largest_difference(solved(c, "upcg:diagonal", 1e-6), solved(c, "upcg:reduced_diagonal", 1e-6)), 1e-5);
+  EXPECT_GT(largest_difference(solved(c, "upcg:diagonal", 1e-6),
+                               solved(c, "upcg:reduced_diagonal", 1e-6)),
+            1e-5);
 }
 
 TEST(Eq10, IsEquivalentAfterAll) {
@@ -164,7 +181,8 @@ TEST(Eq10, IsEquivalentAfterAll) {
   }
 }
 
-// Eq. 10's scale d on I - S is a choice of units: kilograms a hundred times smaller must not cost iterations.
+// Eq. 10's scale d on I - S is a choice of units: kilograms a hundred times smaller must not cost
+// iterations.
 TEST(Eq10, DoesNotDependOnTheUnitOfMass) {
   ConstrainedCase c = stiff_case(3);
   const History kilograms = solved(c, "eq10", 1e-8);
@@ -198,7 +216,8 @@ TEST(CorePcg, BetweenDirectAndBlockDiagonal) {
   c.core.assign(c.core.size(), 1);
   EXPECT_EQ(solved(c, "core_pcg", 1e-8).summary.iterations, 1);
   c.core.clear();
-  const History blocks = solved(c, "core_pcg", 1e-6), upcg = solved(c, "upcg:projected_block_diagonal", 1e-6);
+  const History blocks = solved(c, "core_pcg", 1e-6),
+                upcg = solved(c, "upcg:projected_block_diagonal", 1e-6);
   EXPECT_EQ(blocks.summary.iterations, upcg.summary.iterations);
   EXPECT_LT(largest_difference(blocks, upcg), 1e-9);
 }

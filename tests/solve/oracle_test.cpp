@@ -12,13 +12,15 @@ class Solver : public testing::TestWithParam<std::string> {
   static SolverOptions options() { return solver_options(GetParam(), 1e-10); }
 };
 
-INSTANTIATE_TEST_SUITE_P(All, Solver, testing::ValuesIn(solvers_to_test()), [](const auto& solver) { return test_name(solver.param); });
+INSTANTIATE_TEST_SUITE_P(All, Solver, testing::ValuesIn(solvers_to_test()),
+                         [](const auto& solver) { return test_name(solver.param); });
 
 void expect_solved(const ConstrainedCase& c, ConstrainedSolver& solver) {
   const Eigen::VectorXd expected = c.solution();
   std::vector<double> x(c.b.size(), 1e300);
   const SolveSummary summary = solver.solve(c.system(), x);
-  EXPECT_TRUE(summary.status.ok()) << name_of(summary.status.outcome) << ": " << summary.status.message;
+  EXPECT_TRUE(summary.status.ok())
+      << name_of(summary.status.outcome) << ": " << summary.status.message;
   EXPECT_LT(relative_difference(x, expected), 1e-7);
 
   // S A x = S b and (I-S) x = (I-S) z, with S from the normals.
@@ -42,7 +44,8 @@ void expect_solved(const ConstrainedCase& c, ConstrainedSolver& solver) {
 TEST_P(Solver, AgainstKkt) {
   Random random(1);
   for (const FrameChoice frames : {FrameChoice::duff, FrameChoice::paper_eq13}) {
-    const auto solver = make_solver(options());  // one for all systems: it must not remember the wrong things
+    // one for all systems: it must not remember the wrong things
+    const auto solver = make_solver(options());
     for (const int only : {-1, -1, -1, 3, 2, 1, 0}) {
       SCOPED_TRACE("ndof " + std::to_string(only));
       expect_solved(random_case(random, {.nodes = 30, .frames = frames, .only = only}), *solver);
@@ -50,7 +53,8 @@ TEST_P(Solver, AgainstKkt) {
   }
 }
 
-// The same pattern with new numbers, then with other constraints: the reused symbolic work must fit.
+// The same pattern with new numbers, then with other constraints: the reused symbolic work must
+// fit.
 TEST_P(Solver, OneSolverForManySteps) {
   Random random(2);
   const auto solver = make_solver(options());
@@ -85,7 +89,8 @@ TEST_P(Solver, WithoutConstraints) {
   for (const Index dim : {1, 3, 0}) {  // 0: mixed
     SCOPED_TRACE(dim);
     const auto graph = random_graph(random, 40, 3, 15);
-    const BlockCsr a = random_spd(random, dim ? make_pattern(graph, dim) : make_pattern(graph, random_dims(random, 40)));
+    const BlockCsr a = random_spd(
+        random, dim ? make_pattern(graph, dim) : make_pattern(graph, random_dims(random, 40)));
     const std::vector<double> b = random.vector(a.dofs());
     std::vector<double> x(b.size(), 1e300);
     LinearSystem system;

@@ -29,8 +29,9 @@ TEST(Reference, IsExactWhereASingleSolveIsNot) {
   const Index n = 3000;
   const BlockCsr a = biharmonic(n);
   std::vector<double> x(static_cast<std::size_t>(n)), b(x.size());
-  for (Index i = 0; i < n; ++i) x[i] = double(i + 1) * (n - i) + i % 2;  // smooth, where A is nearly singular
-  multiply(a, x, b);                                                     // sums of integers: exact
+  // smooth, where A is nearly singular
+  for (Index i = 0; i < n; ++i) x[i] = double(i + 1) * (n - i) + i % 2;
+  multiply(a, x, b);  // sums of integers: exact
   LinearSystem system;
   system.matrix = &a;
   system.rhs = b;
@@ -64,27 +65,33 @@ ConstrainedCase random_case(unsigned seed) {
   std::normal_distribution<double> normal;
   constexpr Index n = 5;
   ConstrainedCase c;
-  const Eigen::MatrixXd root = Eigen::MatrixXd::NullaryExpr(3 * n, 3 * n, [&] { return normal(generator); });
+  const Eigen::MatrixXd root =
+      Eigen::MatrixXd::NullaryExpr(3 * n, 3 * n, [&] { return normal(generator); });
   c.dense = root * root.transpose() + Eigen::MatrixXd::Identity(3 * n, 3 * n);
   c.a = BlockCsr(make_pattern(std::vector<std::vector<Index>>(n, {0, 1, 2, 3, 4}), 3));
   for (Index i = 0; i < n; ++i)
     for (Index r = 0; r < 3; ++r)
-      for (Index j = 0; j < 3 * n; ++j) c.a.block(i, c.a.pattern->row_start[i])[r * 3 * n + j] = c.dense(3 * i + r, j);
+      for (Index j = 0; j < 3 * n; ++j)
+        c.a.block(i, c.a.pattern->row_start[i])[r * 3 * n + j] = c.dense(3 * i + r, j);
   c.constraints.reset(n);
-  const auto direction = [&] { return Vec3(normal(generator), normal(generator), normal(generator)); };
+  const auto direction = [&] {
+    return Vec3(normal(generator), normal(generator), normal(generator));
+  };
   c.constraints.constrain(1, direction(), 0.1);
   c.constraints.constrain(2, direction(), 0.2);
   c.constraints.constrain(2, direction(), 0.3);
   c.constraints.fix(3, direction());
   c.constraints.constrain(4, direction(), -0.4);
   for (Index i = 0; i < n; ++i)
-    for (int r = 0; r < 3; ++r) c.z.push_back(c.constraints.displacement(i)[r]), c.b.push_back(normal(generator));
+    for (int r = 0; r < 3; ++r)
+      c.z.push_back(c.constraints.displacement(i)[r]), c.b.push_back(normal(generator));
   return c;
 }
 
 Eigen::MatrixXd projection(const ConstraintSet& constraints) {
   Eigen::MatrixXd s = Eigen::MatrixXd::Zero(3 * constraints.nodes(), 3 * constraints.nodes());
-  for (Index i = 0; i < constraints.nodes(); ++i) s.block<3, 3>(3 * i, 3 * i) = constraints.projection(i);
+  for (Index i = 0; i < constraints.nodes(); ++i)
+    s.block<3, 3>(3 * i, 3 * i) = constraints.projection(i);
   return s;
 }
 
@@ -93,7 +100,8 @@ TEST(Reference, SolvesTheConstrainedSystem) {
   const std::vector<double> x = reference_solution(c.system());
   const Eigen::MatrixXd s = projection(c.constraints), id = Eigen::MatrixXd::Identity(15, 15);
   const Eigen::Map<const Eigen::VectorXd> b(c.b.data(), 15), z(c.z.data(), 15), found(x.data(), 15);
-  const Eigen::VectorXd expected = (s * c.dense + id - s).fullPivLu().solve(s * b + (id - s) * z);  // the paper's Eq. 10
+  // the paper's Eq. 10
+  const Eigen::VectorXd expected = (s * c.dense + id - s).fullPivLu().solve(s * b + (id - s) * z);
   EXPECT_LT((found - expected).norm(), 1e-12 * expected.norm());
 }
 
@@ -105,10 +113,12 @@ TEST(Reference, ErrorIsMeasuredInTheFreeDirectionsOnly) {
   Eigen::VectorXd x = star + Eigen::VectorXd::LinSpaced(15, -0.3, 0.7);
   const Eigen::VectorXd e = s * (x - star), y = s * star;
   const double expected = std::sqrt(e.dot(c.dense * e) / y.dot(c.dense * y));
-  EXPECT_NEAR(anorm_error(c.system(), std::span<const double>(x.data(), 15), reference), expected, 1e-12 * expected);
+  EXPECT_NEAR(anorm_error(c.system(), std::span<const double>(x.data(), 15), reference), expected,
+              1e-12 * expected);
   // Another prescribed part changes nothing.
   x += (Eigen::MatrixXd::Identity(15, 15) - s) * Eigen::VectorXd::Constant(15, 100.0);
-  EXPECT_NEAR(anorm_error(c.system(), std::span<const double>(x.data(), 15), reference), expected, 1e-10 * expected);
+  EXPECT_NEAR(anorm_error(c.system(), std::span<const double>(x.data(), 15), reference), expected,
+              1e-10 * expected);
 }
 
 TEST(Reference, SaysWhyThereIsNone) {

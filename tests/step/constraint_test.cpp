@@ -17,7 +17,8 @@ test::SmallSystem hanging_weight() {
   system.gravity = Vec3(0, 0, -g);
   system.add_node(m0, Vec3::Zero());
   system.add_node(m1, Vec3(0, 0, -(rest + m1 * g / stiffness)));
-  system.add_springs(ForceClass::stretch, SpringLawKind::buckling, {{0, 1, {.rest_length = rest, .stiffness = stiffness, .damping = 2.0}}});
+  system.add_springs(ForceClass::stretch, SpringLawKind::buckling,
+                     {{0, 1, {.rest_length = rest, .stiffness = stiffness, .damping = 2.0}}});
   return system;
 }
 
@@ -30,7 +31,8 @@ TEST(ConstraintImpulse, IsTheWeightTimesTheStep) {
       for (int n = 0; n < 5; ++n) {
         system.step(h);
         const Vec3 j = system.stepper->constraint_impulse()[0];
-        ASSERT_LT((j - h * (m0 + m1) * g * Vec3::UnitZ()).norm(), 1e-11) << name_of(kind) << ", h = " << h << ", step " << n;
+        ASSERT_LT((j - h * (m0 + m1) * g * Vec3::UnitZ()).norm(), 1e-11)
+            << name_of(kind) << ", h = " << h << ", step " << n;
         ASSERT_EQ(system.stepper->constraint_impulse()[1], Vec3(Vec3::Zero()));
       }
       EXPECT_LT(system.state.v[1].norm(), 1e-11);
@@ -51,7 +53,8 @@ TEST(ConstraintImpulse, LiesInTheConstrainedDirections) {
       const Vec3 j = system.stepper->constraint_impulse()[0];
       ASSERT_LT((j + 0.01 * m0 * n.dot(system.gravity) * n).norm(), 1e-14) << name_of(kind);
       const Vec3 along = system.gravity - n.dot(system.gravity) * n;
-      ASSERT_LT((system.state.v[0] - 0.01 * k * along).norm(), 1e-13) << name_of(kind) << ": slides down the incline";
+      ASSERT_LT((system.state.v[0] - 0.01 * k * along).norm(), 1e-13)
+          << name_of(kind) << ": slides down the incline";
     }
   }
 }
@@ -73,27 +76,33 @@ TEST(ConstraintImpulse, OutsideImpulsesActAsForces) {
       pushed.stepper->begin(pushed.state, h);
       ASSERT_TRUE(pushed.stepper->solve(pushed.constraints, impulses).status.ok());
       pushed.stepper->commit(pushed.state);
-      ASSERT_LT((pushed.state.x[0] - heavy.state.x[0]).norm(), 1e-15) << name_of(kind) << ", step " << n;
-      ASSERT_LT((pushed.state.v[0] - heavy.state.v[0]).norm(), 1e-13) << name_of(kind) << ", step " << n;
+      ASSERT_LT((pushed.state.x[0] - heavy.state.x[0]).norm(), 1e-15)
+          << name_of(kind) << ", step " << n;
+      ASSERT_LT((pushed.state.v[0] - heavy.state.v[0]).norm(), 1e-13)
+          << name_of(kind) << ", step " << n;
     }
   }
 }
 
 TEST(PrescribedMotion, PositionsAreThePathsInAllIntegrators) {
-  const auto path = [](double t) { return Vec3(std::sin(3.0 * t), 0.5 - 0.5 * std::cos(5.0 * t), t * t); };
+  const auto path = [](double t) {
+    return Vec3(std::sin(3.0 * t), 0.5 - 0.5 * std::cos(5.0 * t), t * t);
+  };
   for (const IntegratorKind kind : test::all_integrators) {
     test::SmallSystem system = hanging_weight();
     system.start(kind);
     const double h = 0.01;
     Vec3 last_velocity = Vec3::Zero();
     for (int n = 0; n < 200; ++n) {
-      const Vec3 target = path((n + 1) * h), start = system.state.x[0], before = n > 0 ? system.state.x_prev[0] : start;
+      const Vec3 target = path((n + 1) * h), start = system.state.x[0],
+                 before = n > 0 ? system.state.x_prev[0] : start;
       system.constraints.reset(2);
       system.pin(0, target - start);
       system.step(h);
       ASSERT_LT((system.state.x[0] - target).norm(), 1e-13) << name_of(kind) << ", step " << n;
       const bool multistep = kind == IntegratorKind::bdf2 && n > 0;
-      const Vec3 velocity = multistep ? Vec3((3.0 * target - 4.0 * start + before) / (2.0 * h)) : Vec3((target - start) / h);
+      const Vec3 velocity = multistep ? Vec3((3.0 * target - 4.0 * start + before) / (2.0 * h))
+                                      : Vec3((target - start) / h);
       ASSERT_LT((system.state.v[0] - velocity).norm(), 1e-11) << name_of(kind) << ", step " << n;
       last_velocity = system.state.v[0];
     }
@@ -132,7 +141,8 @@ TEST(Bdf2, StepAfterACorrectionIsOneOfEuler) {
 
   bdf2.stepper->begin(bdf2.state, h);
   ASSERT_TRUE(bdf2.stepper->solve(bdf2.constraints, {}).status.ok());
-  const Vec3 end = bdf2.stepper->x_end()[1], speed = bdf2.stepper->v_end()[1], moved(0.001, -0.002, 0.003);
+  const Vec3 end = bdf2.stepper->x_end()[1], speed = bdf2.stepper->v_end()[1],
+             moved(0.001, -0.002, 0.003);
   std::vector<Vec3> corrected(bdf2.stepper->x_end().begin(), bdf2.stepper->x_end().end());
   corrected[1] += moved;
   bdf2.stepper->commit(bdf2.state);
@@ -146,7 +156,8 @@ TEST(Bdf2, StepAfterACorrectionIsOneOfEuler) {
   euler.state = bdf2.state;
   euler.step(h);
   bdf2.step(h);
-  EXPECT_TRUE(bdf2.state.x == euler.state.x && bdf2.state.v == euler.state.v) << "the same bits as Euler's";
+  EXPECT_TRUE(bdf2.state.x == euler.state.x && bdf2.state.v == euler.state.v)
+      << "the same bits as Euler's";
   EXPECT_EQ(bdf2.stepper->integrator().unknown(bdf2.state), "dx");
   EXPECT_TRUE(bdf2.state.last.empty());
 }

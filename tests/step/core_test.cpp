@@ -1,11 +1,12 @@
-// The core that a stepper hands to its solver: whichever is asked for, the same from step to step, with its ρ.
+// The core that a stepper hands to its solver: whichever is asked for, the same from step to step,
+// with its ρ.
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
 
-#include "taut/element/cloth_springs.h"
 #include "taut/core/core_bound.h"
+#include "taut/element/cloth_springs.h"
 #include "taut/step/stepper.h"
 
 namespace taut {
@@ -24,36 +25,44 @@ struct Cloth {
     material.compression = Compression::linear;
     springs = grid_springs(shape, rest, material, 0, "sheet");
     state.x = rest, state.v.assign(rest.size(), Vec3(0.1, 0.2, 0.3));
-    for (std::size_t i = 0; i < rest.size(); ++i) state.x[i].y() += 0.01 * std::sin(static_cast<double>(i));
+    for (std::size_t i = 0; i < rest.size(); ++i)
+      state.x[i].y() += 0.01 * std::sin(static_cast<double>(i));
     masses.assign(rest.size(), 9.5e-6);
     constraints.reset(shape.node_count());
     constraints.fix(0, Vec3::Zero());
   }
-  Stepper stepper(const std::string& solver, const std::string& core, IntegratorKind integrator = IntegratorKind::semi_implicit_euler) {
+  Stepper stepper(const std::string& solver, const std::string& core,
+                  IntegratorKind integrator = IntegratorKind::semi_implicit_euler) {
     std::vector<const ForceModel*> models;
     for (const auto& model : springs) models.push_back(model.get());
     SolverOptions options;
     options.name = solver, options.core = core;
-    return Stepper(shape.node_count(), models, ExternalForces(masses, Vec3(0, 0, -9.81), {}), integrator, options);
+    return Stepper(shape.node_count(), models, ExternalForces(masses, Vec3(0, 0, -9.81), {}),
+                   integrator, options);
   }
 };
 
-std::vector<std::uint8_t> mask_of(const Stepper& stepper) { return {stepper.core_mask().begin(), stepper.core_mask().end()}; }
+std::vector<std::uint8_t> mask_of(const Stepper& stepper) {
+  return {stepper.core_mask().begin(), stepper.core_mask().end()};
+}
 
 TEST(StepperCore, IsTheStretchSpringsOrChosen) {
   Cloth cloth;
-  for (const auto& [solver, core, chosen] : {std::tuple{"core_pcg:block", "", false}, std::tuple{"core_pcg:block", "auto", true},
-                                             std::tuple{"auto", "", true}, std::tuple{"auto", "stretch", false}}) {
+  for (const auto& [solver, core, chosen] :
+       {std::tuple{"core_pcg:block", "", false}, std::tuple{"core_pcg:block", "auto", true},
+        std::tuple{"auto", "", true}, std::tuple{"auto", "stretch", false}}) {
     Stepper stepper = cloth.stepper(solver, core);
     stepper.begin(cloth.state, 5e-3);
-    EXPECT_EQ(mask_of(stepper), chosen ? stepper.chosen_core(5e-3) : stepper.stretch_core()) << solver << ", " << core;
+    EXPECT_EQ(mask_of(stepper), chosen ? stepper.chosen_core(5e-3) : stepper.stretch_core())
+        << solver << ", " << core;
     const Index stretch = cloth.springs[0]->block_count();
     if (chosen) {
       EXPECT_GT(stepper.core_springs(), stretch);
     } else {
       EXPECT_EQ(stepper.core_springs(), stretch);
     }
-    EXPECT_EQ(stepper.system().rho, remainder_ratio(stepper.matrix(), stepper.core_mask(), cloth.masses));
+    EXPECT_EQ(stepper.system().rho,
+              remainder_ratio(stepper.matrix(), stepper.core_mask(), cloth.masses));
   }
 }
 
@@ -88,8 +97,10 @@ TEST(StepperCore, BoundsTheStiffness) {
     for (Index i = 0; i < a.rows(); ++i) {
       Mat3 diagonal;
       for (int r = 0; r < 3; ++r)
-        for (int c = 0; c < 3; ++c) diagonal(r, c) = a.block(i, a.pattern->diagonal[i])[r * a.pattern->width(i) + c];
-      largest = std::max(largest, Eigen::SelfAdjointEigenSolver<Mat3>(diagonal).eigenvalues()[2] / cloth.masses[static_cast<std::size_t>(i)]);
+        for (int c = 0; c < 3; ++c)
+          diagonal(r, c) = a.block(i, a.pattern->diagonal[i])[r * a.pattern->width(i) + c];
+      largest = std::max(largest, Eigen::SelfAdjointEigenSolver<Mat3>(diagonal).eigenvalues()[2] /
+                                      cloth.masses[static_cast<std::size_t>(i)]);
     }
     EXPECT_LE(largest, 1.0 + stepper.system().stiffness);
     EXPECT_GT(largest, 0.2 * stepper.system().stiffness);
@@ -97,7 +108,8 @@ TEST(StepperCore, BoundsTheStiffness) {
 }
 
 TEST(StepperCore, StaysInShorterStepsAndWhateverTheClothDoes) {
-  for (const IntegratorKind kind : {IntegratorKind::semi_implicit_euler, IntegratorKind::bdf2, IntegratorKind::newton}) {
+  for (const IntegratorKind kind :
+       {IntegratorKind::semi_implicit_euler, IntegratorKind::bdf2, IntegratorKind::newton}) {
     Cloth cloth;
     Stepper stepper = cloth.stepper("auto", "", kind);
     stepper.choose_core(5e-3);
@@ -106,7 +118,8 @@ TEST(StepperCore, StaysInShorterStepsAndWhateverTheClothDoes) {
     for (const double h : {5e-3, 5e-3, 2.5e-3, 5e-3}) {
       stepper.begin(cloth.state, h);
       const SolveSummary summary = stepper.solve(cloth.constraints, {});
-      // Newton's loop may end at its limit on this crumpled cloth; its systems are what counts here.
+      // Newton's loop may end at its limit on this crumpled cloth; its systems are what counts
+      // here.
       ASSERT_TRUE(summary.status.ok() || kind == IntegratorKind::newton) << summary.status.message;
       EXPECT_LE(stepper.system().rho, 8.0 * (1.0 + 1e-6));
       EXPECT_EQ(mask_of(stepper), core);

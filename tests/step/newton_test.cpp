@@ -1,5 +1,5 @@
-// Implicit Euler by Newton's method: the momentum equation holds at the end of the step, checked with the readable form of the spring law,
-// which the assembly does not use.
+// Implicit Euler by Newton's method: the momentum equation holds at the end of the step, checked
+// with the readable form of the spring law, which the assembly does not use.
 
 #include <gtest/gtest.h>
 
@@ -24,7 +24,9 @@ test::SmallSystem tumbling(SpringLawKind law, double damping, double drag) {
   for (Index j = 0; j < 4; ++j)
     for (Index i = 0; i < 4; ++i) {
       const Vec3 x(0.1 * i, 0.1 * j, 0.01 * share(random));
-      system.add_node(0.01 + 0.002 * share(random), x, Vec3(0, 0, 50).cross(x) + 0.3 * Vec3(share(random), share(random), share(random)));
+      system.add_node(
+          0.01 + 0.002 * share(random), x,
+          Vec3(0, 0, 50).cross(x) + 0.3 * Vec3(share(random), share(random), share(random)));
       const Index n = 4 * j + i;
       if (i > 0) springs.push_back({n - 1, n, p});
       if (j > 0) springs.push_back({n - 4, n, p});
@@ -40,10 +42,12 @@ std::vector<Vec3> residual(const test::SmallSystem& system, const State& before,
   std::vector<Vec3> r(system.masses.size());
   const State& after = system.state;
   for (std::size_t i = 0; i < r.size(); ++i)
-    r[i] = h * (system.masses[i] * system.gravity - system.drag * after.v[i]) - system.masses[i] * (after.v[i] - before.v[i]);
+    r[i] = h * (system.masses[i] * system.gravity - system.drag * after.v[i]) -
+           system.masses[i] * (after.v[i] - before.v[i]);
   for (const auto& model : system.models)
     for (const auto& [i, j, p] : model->springs()) {
-      const Vec3 force = spring_response(model->law(), p, after.x[j] - after.x[i], after.v[j] - after.v[i]).force;
+      const Vec3 force =
+          spring_response(model->law(), p, after.x[j] - after.x[i], after.v[j] - after.v[i]).force;
       r[i] += h * force;
       r[j] -= h * force;
     }
@@ -62,8 +66,10 @@ TEST(Newton, TheMomentumEquationHoldsAtTheEndOfTheStep) {
       system.step(h);
       EXPECT_GT(system.stepper->newton_iterations(), 1);
       const std::vector<Vec3> r = residual(system, before, h);
-      for (std::size_t i = 1; i < r.size(); ++i) EXPECT_LT(r[i].norm(), 1e-9) << "step " << k << ", node " << i;
-      EXPECT_LT((system.stepper->constraint_impulse()[0] + r[0]).norm(), 1e-9) << "the pin gives what is missing";
+      for (std::size_t i = 1; i < r.size(); ++i)
+        EXPECT_LT(r[i].norm(), 1e-9) << "step " << k << ", node " << i;
+      EXPECT_LT((system.stepper->constraint_impulse()[0] + r[0]).norm(), 1e-9)
+          << "the pin gives what is missing";
       EXPECT_EQ(system.state.x[0], before.x[0]);
     }
   }
@@ -98,10 +104,12 @@ TEST(Newton, SaysWhenItDoesNotGetThere) {
   system.stepper->begin(system.state, 0.02);
   const SolveSummary summary = system.stepper->solve(system.constraints, {});
   EXPECT_EQ(summary.status.outcome, Outcome::max_iterations);
-  EXPECT_NE(summary.status.message.find("after 2 of 2 iterations"), std::string::npos) << summary.status.message;
+  EXPECT_NE(summary.status.message.find("after 2 of 2 iterations"), std::string::npos)
+      << summary.status.message;
 }
 
-// The line search, on r(u) = -atan(u) in one unknown, for which plain Newton diverges from |u| > 1.39.
+// The line search, on r(u) = -atan(u) in one unknown, for which plain Newton diverges from |u| >
+// 1.39.
 TEST(Newton, TheLineSearchConvergesWhereFullStepsDiverge) {
   std::vector<Vec3> u{Vec3(3, 0, 0)};
   double at = 0.0;
@@ -113,7 +121,8 @@ TEST(Newton, TheLineSearchConvergesWhereFullStepsDiverge) {
         return SolveSummary{};
       },
   };
-  const NewtonSummary summary = newton(problem, {.tolerance = 1e-12, .max_iterations = 50}, 1.0, {}, u);
+  const NewtonSummary summary =
+      newton(problem, {.tolerance = 1e-12, .max_iterations = 50}, 1.0, {}, u);
   EXPECT_TRUE(summary.status.ok()) << summary.status.message;
   EXPECT_GT(summary.halvings, 0);
   EXPECT_LT(std::abs(u[0].x()), 1e-12);

@@ -1,5 +1,5 @@
-// Order of accuracy, against a classical Runge-Kutta solution of the same springs with steps so small that its error does not show; and
-// where IMEX's explicit springs become unstable.
+// Order of accuracy, against a classical Runge-Kutta solution of the same springs with steps so
+// small that its error does not show; and where IMEX's explicit springs become unstable.
 
 #include <gtest/gtest.h>
 
@@ -14,19 +14,22 @@
 namespace taut {
 namespace {
 
-// A chain of three below a pin, pulled tight by gravity, swinging and bouncing: every spring stays stretched.
+// A chain of three below a pin, pulled tight by gravity, swinging and bouncing: every spring stays
+// stretched.
 test::SmallSystem swinging() {
   test::SmallSystem system;
   system.gravity = Vec3(0, 0, -9.81);
   std::vector<Spring> stretch;
   const std::array depth{0.0, 0.96, 1.86, 2.70};  // near equilibrium
   for (Index i = 0; i <= 3; ++i) {
-    system.add_node(0.1 + 0.05 * i, Vec3(0.02 * i, -0.01 * i * i, -depth[i]), Vec3(0.1 * i, 0.05 * i, 0.02 * i));
+    system.add_node(0.1 + 0.05 * i, Vec3(0.02 * i, -0.01 * i * i, -depth[i]),
+                    Vec3(0.1 * i, 0.05 * i, 0.02 * i));
     if (i > 0) stretch.push_back({i - 1, i, {.rest_length = 0.8, .stiffness = 30.0 + 5.0 * i}});
   }
   system.add_springs(ForceClass::stretch, SpringLawKind::buckling, stretch);
   system.add_springs(ForceClass::shear, SpringLawKind::buckling,
-                     {{0, 2, {.rest_length = 1.7, .stiffness = 4.0}}, {1, 3, {.rest_length = 1.6, .stiffness = 3.0}}});
+                     {{0, 2, {.rest_length = 1.7, .stiffness = 4.0}},
+                      {1, 3, {.rest_length = 1.6, .stiffness = 3.0}}});
   return system;
 }
 
@@ -37,7 +40,8 @@ std::vector<Vec3> acceleration(const test::SmallSystem& system, const std::vecto
   for (const auto& model : system.models)
     for (const auto& [i, j, p] : model->springs()) {
       const SpringResponse r = spring_response(model->law(), p, x[j] - x[i], Vec3::Zero());
-      if (r.force.norm() == 0.0) throw std::runtime_error("a slack spring: the test would say nothing");
+      if (r.force.norm() == 0.0)
+        throw std::runtime_error("a slack spring: the test would say nothing");
       a[i] += r.force / system.masses[i];
       a[j] -= r.force / system.masses[j];
     }
@@ -76,7 +80,8 @@ TEST(Order, EulerAndImexAreOfOrderOneAndBdf2OfOrderTwo) {
     system.run(time / steps, steps);
     double sum = 0.0;
     for (std::size_t i = 0; i < exact.first.size(); ++i)
-      sum += (system.state.x[i] - exact.first[i]).squaredNorm() + (system.state.v[i] - exact.second[i]).squaredNorm();
+      sum += (system.state.x[i] - exact.first[i]).squaredNorm() +
+             (system.state.v[i] - exact.second[i]).squaredNorm();
     return std::sqrt(sum);
   };
   for (const IntegratorKind kind : test::all_integrators) {
@@ -88,8 +93,9 @@ TEST(Order, EulerAndImexAreOfOrderOneAndBdf2OfOrderTwo) {
   }
 }
 
-// Shear springs alone on a flat square grid, explicit under IMEX: v += h f/m, x += h v is stable for h² λmax/m < 4, and λmax <= 4 k_shear
-// (four diagonals a node, L <= 2 D), hence "h² k_shear/m < 1". On a grid of some size the bound is nearly met.
+// Shear springs alone on a flat square grid, explicit under IMEX: v += h f/m, x += h v is stable
+// for h² λmax/m < 4, and λmax <= 4 k_shear (four diagonals a node, L <= 2 D), hence "h² k_shear/m <
+// 1". On a grid of some size the bound is nearly met.
 TEST(Imex, IsStableUpToItsBoundAndNotBeyond) {
   constexpr double mass = 0.01, k_shear = 0.3;
   const GridShape shape{.nu = 9, .nv = 9};
@@ -101,20 +107,28 @@ TEST(Imex, IsStableUpToItsBoundAndNotBeyond) {
 
   Eigen::MatrixXd k = Eigen::MatrixXd::Zero(3 * 81, 3 * 81);
   for (const auto& [i, j, p] : shear) {
-    const Mat3 block = spring_response(SpringLawKind::linear, p, mesh.positions[j] - mesh.positions[i], Vec3::Zero()).stiffness;
-    for (const auto& [r, c, sign] : {std::tuple{i, i, 1.0}, {j, j, 1.0}, {i, j, -1.0}, {j, i, -1.0}})
+    const Mat3 block = spring_response(SpringLawKind::linear, p,
+                                       mesh.positions[j] - mesh.positions[i], Vec3::Zero())
+                           .stiffness;
+    for (const auto& [r, c, sign] :
+         {std::tuple{i, i, 1.0}, {j, j, 1.0}, {i, j, -1.0}, {j, i, -1.0}})
       k.block<3, 3>(3 * r, 3 * c) += sign * block;
   }
-  const double largest = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(k, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff();
+  const double largest = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(k, Eigen::EigenvaluesOnly)
+                             .eigenvalues()
+                             .maxCoeff();
   EXPECT_LE(largest, 4.0 * k_shear);
   EXPECT_GT(largest, 3.7 * k_shear);
 
   const auto kinetic_after = [&](IntegratorKind kind, double h, int steps) {
     test::SmallSystem system;
-    // So small that the sheet stays flat to first order; the pattern of the fastest mode, and something of all others.
+    // So small that the sheet stays flat to first order; the pattern of the fastest mode, and
+    // something of all others.
     for (Index i = 0; i < 81; ++i) {
       const double sign = (i % 9 + i / 9) % 2 == 0 ? 1.0 : -1.0, other = i % 2 == 0 ? 1.0 : -0.7;
-      system.add_node(mass, mesh.positions[i], 1e-9 * Vec3(sign + 0.1 * other, 0.3 * other, sign * ((i % 9) % 2 ? 1.0 : -1.0)));
+      system.add_node(
+          mass, mesh.positions[i],
+          1e-9 * Vec3(sign + 0.1 * other, 0.3 * other, sign * ((i % 9) % 2 ? 1.0 : -1.0)));
     }
     system.add_springs(ForceClass::shear, SpringLawKind::linear, {shear.begin(), shear.end()});
     system.start(kind);
@@ -127,7 +141,8 @@ TEST(Imex, IsStableUpToItsBoundAndNotBeyond) {
   EXPECT_LT(kinetic_after(IntegratorKind::imex, 0.98 * limit, 500), 1e4)
       << "bounded: symplectic Euler's energy swells near its limit, but does not grow";
   EXPECT_GT(kinetic_after(IntegratorKind::imex, 1.02 * limit, 50), 1e10);
-  EXPECT_LT(kinetic_after(IntegratorKind::semi_implicit_euler, 1.02 * limit, 500), 3.0) << "implicit: no bound";
+  EXPECT_LT(kinetic_after(IntegratorKind::semi_implicit_euler, 1.02 * limit, 500), 3.0)
+      << "implicit: no bound";
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #pragma once
-// A few masses and springs with a Stepper around them, solved directly: what is tested is the integrator.
+// A few masses and springs with a Stepper around them, solved directly: what is tested is the
+// integrator.
 
 #include <gtest/gtest.h>
 
@@ -41,10 +42,13 @@ struct SmallSystem {
     for (const auto& model : models) all.push_back(model.get());
     ExternalForces external(masses, gravity, {});
     for (Index i = 0; i < nodes(); ++i) external.set_drag(i, drag);
-    stepper = std::make_unique<Stepper>(nodes(), all, std::move(external), integrator, direct_solver(), newton);
+    stepper = std::make_unique<Stepper>(nodes(), all, std::move(external), integrator,
+                                        direct_solver(), newton);
     constraints.reset(nodes());
   }
-  void pin(Index node, const Vec3& displacement = Vec3::Zero()) { constraints.fix(node, displacement); }
+  void pin(Index node, const Vec3& displacement = Vec3::Zero()) {
+    constraints.fix(node, displacement);
+  }
   // One step under the constraints as they are.
   void step(double h) {
     stepper->begin(state, h);
@@ -68,7 +72,8 @@ struct SmallSystem {
   }
 };
 
-inline constexpr std::array all_integrators{IntegratorKind::semi_implicit_euler, IntegratorKind::imex, IntegratorKind::imex_adaptive, IntegratorKind::bdf2,
-                                            IntegratorKind::newton};
+inline constexpr std::array all_integrators{IntegratorKind::semi_implicit_euler,
+                                            IntegratorKind::imex, IntegratorKind::imex_adaptive,
+                                            IntegratorKind::bdf2, IntegratorKind::newton};
 
 }  // namespace taut::test

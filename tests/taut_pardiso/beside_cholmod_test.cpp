@@ -1,4 +1,5 @@
-// oneMKL in a program that links CHOLMOD: its BLAS, of the same names, must not take the place of CHOLMOD's.
+// oneMKL in a program that links CHOLMOD: its BLAS, of the same names, must not take the place of
+// CHOLMOD's.
 
 #include <dlfcn.h>
 #include <gtest/gtest.h>
@@ -19,7 +20,9 @@ bool solves(SparseCholesky& cholesky, const BlockCsr& a, std::vector<double>& x)
 std::string library_of(const char* symbol) {
   Dl_info info{};
   void* address = dlsym(RTLD_DEFAULT, symbol);
-  return address && dladdr(address, &info) ? std::filesystem::canonical(info.dli_fname).filename().string() : "";
+  return address && dladdr(address, &info)
+             ? std::filesystem::canonical(info.dli_fname).filename().string()
+             : "";
 }
 
 TEST(PardisoBesideCholmod, EachHasItsOwnBlas) {

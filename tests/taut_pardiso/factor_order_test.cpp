@@ -1,4 +1,5 @@
-// The permutation that PARDISO hands out is that of its factor: eliminating in this order fills as much as PARDISO says that it stores.
+// The permutation that PARDISO hands out is that of its factor: eliminating in this order fills as
+// much as PARDISO says that it stores.
 
 #include <gtest/gtest.h>
 
@@ -8,7 +9,8 @@
 namespace taut::test {
 namespace {
 
-// Entries of L when unknown order[k] is eliminated k-th (Liu's elimination tree: row k of L is what the tree paths from A's row k pass).
+// Entries of L when unknown order[k] is eliminated k-th (Liu's elimination tree: row k of L is what
+// the tree paths from A's row k pass).
 double fill_in(const ScalarCsc& lower, std::span<const Index> order) {
   const Index n = static_cast<Index>(order.size());
   std::vector<Index> place(order.size()), parent(order.size(), -1), visited(order.size(), -1);
@@ -49,9 +51,11 @@ TEST(Pardiso, HandsOutTheOrderOfItsFactor) {
   const FactorStatistics statistics = pardiso.statistics();
   const double entries = fill_in(lower, order);
   EXPECT_LE(entries, statistics.nonzeros);
-  EXPECT_GE(entries, 0.8 * statistics.nonzeros);                    // supernodes store some zeros
-  EXPECT_GE(fill_in(lower, inverse), 2.0 * statistics.nonzeros);    // so this test can tell an order from its inverse
-  EXPECT_GE(statistics.flops + 1e6, entries * entries / a.dofs());  // Σ |L_k|² >= (Σ |L_k|)² / n; told in whole millions
+  EXPECT_GE(entries, 0.8 * statistics.nonzeros);  // supernodes store some zeros
+  // so this test can tell an order from its inverse
+  EXPECT_GE(fill_in(lower, inverse), 2.0 * statistics.nonzeros);
+  // Σ |L_k|² >= (Σ |L_k|)² / n; told in whole millions
+  EXPECT_GE(statistics.flops + 1e6, entries * entries / a.dofs());
   EXPECT_EQ(statistics.ordering, "metis");
 }
 

@@ -3,8 +3,8 @@
 #include "solve/constrained_case.h"
 #include "taut_pardiso/pardiso.h"
 
-// Registered before the tests are listed: those with one case a backend or solver see it. CHOLMOD, tested elsewhere, is linked but not
-// registered.
+// Registered before the tests are listed: those with one case a backend or solver see it. CHOLMOD,
+// tested elsewhere, is linked but not registered.
 int main(int argc, char** argv) {
   taut::register_pardiso();
   taut::test::backend_under_test = "pardiso";

@@ -1,5 +1,6 @@
-// PARDISO's CG on the factor of an earlier system: when it is used, when it falls back, and that the answer is right either way.
-// PARDISO also falls back when its clock tells it to, which it may at any time, so what is about CG is tried several times.
+// PARDISO's CG on the factor of an earlier system: when it is used, when it falls back, and that
+// the answer is right either way. PARDISO also falls back when its clock tells it to, which it may
+// at any time, so what is about CG is tried several times.
 
 #include <gtest/gtest.h>
 
@@ -45,7 +46,9 @@ class Sequence {
   std::unique_ptr<ConstrainedSolver> solver_;
 };
 
-bool says(const SolveSummary& summary, const std::string& part) { return summary.remark.find(part) != std::string::npos; }
+bool says(const SolveSummary& summary, const std::string& part) {
+  return summary.remark.find(part) != std::string::npos;
+}
 bool fell_back(const SolveSummary& summary) { return says(summary, "gave up"); }
 
 TEST(PardisoCgs, FactorisesFirst) {
@@ -106,7 +109,8 @@ TEST(PardisoCgs, OtherConstraintsNeedAnotherFactor) {
   sequence.solve();
   sequence.constraints.fix(1, Vec3::Zero());
   const SolveSummary other = sequence.solve();
-  EXPECT_TRUE(other.status.ok() && other.iterations == 0 && says(other, "another pattern")) << other.remark;
+  EXPECT_TRUE(other.status.ok() && other.iterations == 0 && says(other, "another pattern"))
+      << other.remark;
   EXPECT_FALSE(fell_back(other));
   EXPECT_GT(other.order_ms, 0.0);
   EXPECT_LT(other.relative_residual, 1e-12);
@@ -122,7 +126,8 @@ TEST(PardisoCgs, ToleranceDecidesHowManyDigits) {
       sequence.solve();
       summary = sequence.solve(0.3);
     }
-    // PARDISO watches the clock: where its factorisation was quick, many iterations are refused, whatever the attempt.
+    // PARDISO watches the clock: where its factorisation was quick, many iterations are refused,
+    // whatever the attempt.
     if (summary.iterations == 0 && iterations_before > 5) break;
     ASSERT_GT(summary.iterations, iterations_before) << tolerance;
     EXPECT_LT(summary.relative_residual, 0.2 * residual_before);

@@ -28,10 +28,11 @@ struct BenchOptions {
 
 // Paper, Table 1: MPCG against uPCG on few and on many constraints, 6,561 nodes, h = 3.67 ms.
 std::vector<ReportRow> bench_table1(const BenchOptions& options);
-// Paper, Table 2: a ball hits a sheet; MPCG, CHOLMOD, PARDISO (where built in) and corePCG for three sizes and stiffnesses, semi-implicit
-// Euler and IMEX matrices.
+// Paper, Table 2: a ball hits a sheet; MPCG, CHOLMOD, PARDISO (where built in) and corePCG for
+// three sizes and stiffnesses, semi-implicit Euler and IMEX matrices.
 std::vector<ReportRow> bench_table2(const BenchOptions& options);
-// Time to equal error over stiffness, step, shear and bend; the core's bound beside its eigenvalues and iterations.
+// Time to equal error over stiffness, step, shear and bend; the core's bound beside its eigenvalues
+// and iterations.
 nlohmann::ordered_json bench_flatness(const BenchOptions& options);
 // Time to equal error and memory over the number of nodes.
 nlohmann::ordered_json bench_scale(const BenchOptions& options);
@@ -40,14 +41,16 @@ nlohmann::ordered_json bench_integrators(const BenchOptions& options);
 // The paper's "improper U": iterations of one system in three kinds of frames, 6,561 nodes.
 nlohmann::ordered_json bench_frames(const BenchOptions& options);
 
-// Contact by phase, on ball and clump; or the stress test. Rows: one a step, or one a trial. `methods` then names the scenes.
+// Contact by phase, on ball and clump; or the stress test. Rows: one a step, or one a trial.
+// `methods` then names the scenes.
 nlohmann::ordered_json bench_contact(const BenchOptions& options);
 
 // Of flatness and scale: options.methods, or the default ones that this build knows.
 std::vector<std::string> methods_of(const BenchOptions& options);
 // Nodes along each side of a square sheet. Throws InputError when there is no such whole number.
 int side_of(int nodes);
-// Steps until the first contact, then `more` of them. Throws InputError when a step fails or there is no contact in 1000 steps.
+// Steps until the first contact, then `more` of them. Throws InputError when a step fails or there
+// is no contact in 1000 steps.
 void run_into_contact(Simulation& simulation, int more);
 
 // One phase of a step, measured alone.
@@ -58,7 +61,8 @@ struct RooflineRow {
   double milliseconds = 0.0;
   double read_GB_per_s = 0.0;  // of an array of as many bytes
 };
-// Each phase's rate against what the machine can do at best. `options.nodes`: 1681, 6561, 25921, 103041 or 263169; empty: the first three.
+// Each phase's rate against what the machine can do at best. `options.nodes`: 1681, 6561, 25921,
+// 103041 or 263169; empty: the first three.
 nlohmann::ordered_json bench_roofline(const BenchOptions& options, const MachineFacts& machine);
 
 }  // namespace taut::app

@@ -1,6 +1,7 @@
-// taut bench contact: what contact costs a step, by phase, while nothing touches (ball) and in a heap of folds (clump); or, with --stress,
-// every contact scene and jittered copies of it, each of which must finish without an intersection in any step, by Taut's own check; and
-// with --judge in any frame, by another program.
+// taut bench contact: what contact costs a step, by phase, while nothing touches (ball) and in a
+// heap of folds (clump); or, with --stress, every contact scene and jittered copies of it, each of
+// which must finish without an intersection in any step, by Taut's own check; and with --judge in
+// any frame, by another program.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -28,19 +29,23 @@ using Json = nlohmann::ordered_json;
 // Where a step's time goes, and what it found; summed up, then divided.
 struct Means {
   int steps = 0;
-  double near = 0, impulse = 0, detect = 0, zone = 0, contact = 0, check = 0, step = 0, tested = 0, pairs = 0, impacts = 0, zone_nodes = 0;
+  double near = 0, impulse = 0, detect = 0, zone = 0, contact = 0, check = 0, step = 0, tested = 0,
+         pairs = 0, impacts = 0, zone_nodes = 0;
 
   void add(const StepRecord& r) {
     ++steps;
-    near += r.near_ms, impulse += r.impulse_ms, detect += r.detect_ms, zone += r.zone_ms, contact += r.contact_ms, check += r.check_ms;
-    step += r.step_ms, tested += static_cast<double>(r.pairs_tested), pairs += r.near_pairs, impacts += r.impacts,
-        zone_nodes += r.zone_nodes;
+    near += r.near_ms, impulse += r.impulse_ms, detect += r.detect_ms, zone += r.zone_ms,
+        contact += r.contact_ms, check += r.check_ms;
+    step += r.step_ms, tested += static_cast<double>(r.pairs_tested), pairs += r.near_pairs,
+        impacts += r.impacts, zone_nodes += r.zone_nodes;
   }
   double mean(double sum) const { return steps > 0 ? sum / steps : 0.0; }
   std::vector<std::string> row(const std::string& scene, Index nodes) const {
     std::vector<std::string> cells{scene, fmt::format("{}", nodes)};
-    for (const double ms : {near, impulse, detect, zone, contact, check, step}) cells.push_back(fmt::format("{:.1f}", mean(ms)));
-    for (const double count : {tested, pairs, impacts, zone_nodes}) cells.push_back(fmt::format("{:.0f}", mean(count)));
+    for (const double ms : {near, impulse, detect, zone, contact, check, step})
+      cells.push_back(fmt::format("{:.1f}", mean(ms)));
+    for (const double count : {tested, pairs, impacts, zone_nodes})
+      cells.push_back(fmt::format("{:.0f}", mean(count)));
     return cells;
   }
 };
@@ -80,7 +85,8 @@ struct Experiment {
 
 void measure(const Experiment& e, const BenchOptions& options, TextTable& table, Json& rows) {
   const int side = options.nodes.empty() ? e.k_nodes : side_of(options.nodes.front());
-  std::vector<std::string> settings{fmt::format("cloth.grid.nodes=[{0},{0}]", side), "solver.name=auto"};
+  std::vector<std::string> settings{fmt::format("cloth.grid.nodes=[{0},{0}]", side),
+                                    "solver.name=auto"};
   if (e.step > 0.0) settings.push_back(fmt::format("time.step={}", e.step));
   Simulation simulation(read_scene(fmt::format("{}/{}.toml", options.scenes, e.scene), settings));
   StepRecord record;
@@ -93,19 +99,22 @@ void measure(const Experiment& e, const BenchOptions& options, TextTable& table,
   table.add(means.row(e.scene, simulation.cloth().nodes()));
 }
 
-// ---- stress ----------------------------------------------------------------------------------------------------------------------
+// ---- stress
 
-constexpr const char* contact_scenes[] = {"clump", "stack", "twist", "pinch", "tshirt_cylinder", "body"};
+constexpr const char* contact_scenes[] = {"clump", "stack",           "twist",
+                                          "pinch", "tshirt_cylinder", "body"};
 
 struct Trial {
   std::string end = "finished";
   int steps = 0, retries = 0, most_pairs = 0, impacts = 0;
   Offset intersections = 0, zone_steps = 0, node_steps = 0;
   double seconds = 0.0, kinetic_J = 0.0;
-  int judged = 0, judged_intersecting = 0;  // frames that another program saw, and in which it found intersections
+  // frames that another program saw, and in which it found intersections
+  int judged = 0, judged_intersecting = 0;
 };
 
-// Gives a frame's whole surface to `judge --solid-from K FILE.obj` (tests/contact/judge), which exits with 0 or, of intersections, 1.
+// Gives a frame's whole surface to `judge --solid-from K FILE.obj` (tests/contact/judge), which
+// exits with 0 or, of intersections, 1.
 class FrameJudge {
  public:
   explicit FrameJudge(std::string program) : program_(std::move(program)) {}
@@ -114,15 +123,20 @@ class FrameJudge {
     const SurfaceContact* contact = simulation.surface_contact();
     if (program_.empty() || contact == nullptr) return;
     const CollisionSurface& surface = contact->contact().surface();
-    const auto file = std::filesystem::temp_directory_path() / fmt::format("taut-judged-{}.obj", getpid());
-    write_obj(file, {contact->positions(simulation.state().time, simulation.state().x), surface.triangles, {}});
-    const ChildEnd end =
-        run_child({program_, "--solid-from", std::to_string(simulation.cloth().nodes()), file.string()}, std::chrono::minutes(5));
+    const auto file =
+        std::filesystem::temp_directory_path() / fmt::format("taut-judged-{}.obj", getpid());
+    write_obj(
+        file,
+        {contact->positions(simulation.state().time, simulation.state().x), surface.triangles, {}});
+    const ChildEnd end = run_child(
+        {program_, "--solid-from", std::to_string(simulation.cloth().nodes()), file.string()},
+        std::chrono::minutes(5));
     std::filesystem::remove(file);
     if (end.outcome == ChildEnd::Outcome::not_found)
       throw InputError(fmt::format("there is no program '{}'; give --judge another", program_));
     if (end.outcome != ChildEnd::Outcome::exited || end.code > 1)
-      throw InputError(fmt::format("the judge {} could not judge a frame: {}", program_, end.errors));
+      throw InputError(
+          fmt::format("the judge {} could not judge a frame: {}", program_, end.errors));
     ++trial.judged;
     trial.judged_intersecting += end.code;
   }
@@ -148,7 +162,8 @@ Trial run_trial(Scene read, const BenchOptions& options, int seed) {
     cloth.jitter = std::max(cloth.jitter, 1e-4);
     cloth.jitter_seed = 100u + static_cast<unsigned>(seed);  // not that of the scene itself
   }
-  const int steps = options.stress_frames * read.time.steps_per_frame;  // beyond the scene's own end: it must lie still, too
+  // beyond the scene's own end: it must lie still, too
+  const int steps = options.stress_frames * read.time.steps_per_frame;
   Timer timer;
   Trial trial;
   const int steps_per_frame = read.time.steps_per_frame;
@@ -180,18 +195,22 @@ Trial run_trial(Scene read, const BenchOptions& options, int seed) {
 std::vector<std::string> scenes_to_stress(const BenchOptions& options) {
   for (const std::string& name : options.methods)
     if (!std::ranges::count(contact_scenes, name))
-      throw InputError(fmt::format("--scene: '{}' is none of the contact scenes: {}", name, fmt::join(contact_scenes, ", ")));
+      throw InputError(fmt::format("--scene: '{}' is none of the contact scenes: {}", name,
+                                   fmt::join(contact_scenes, ", ")));
   std::vector<std::string> scenes;
   for (const char* scene : contact_scenes) {
     const bool asked = std::ranges::count(options.methods, scene) > 0;
     if (!options.methods.empty() && !asked) continue;
     const bool there = std::filesystem::exists(fmt::format("{}/{}.toml", options.scenes, scene));
     if (asked && !there)
-      throw InputError(fmt::format("--scene: there is no {}.toml in {}; give its folder with --scenes", scene, options.scenes));
+      throw InputError(
+          fmt::format("--scene: there is no {}.toml in {}; give its folder with --scenes", scene,
+                      options.scenes));
     if (there) scenes.push_back(scene);
   }
   if (scenes.empty())
-    throw InputError(fmt::format("--scenes: {} has none of the contact scenes: {}", options.scenes, fmt::join(contact_scenes, ", ")));
+    throw InputError(fmt::format("--scenes: {} has none of the contact scenes: {}", options.scenes,
+                                 fmt::join(contact_scenes, ", ")));
   return scenes;
 }
 
@@ -202,13 +221,18 @@ Json stress(const BenchOptions& options) {
     if (!read) continue;
     for (int seed = 0; seed <= options.stress; ++seed) {
       const Trial trial = run_trial(*read, options, seed);
-      const double share = trial.node_steps > 0 ? double(trial.zone_steps) / double(trial.node_steps) : 0.0;
+      const double share =
+          trial.node_steps > 0 ? double(trial.zone_steps) / double(trial.node_steps) : 0.0;
       fmt::print(
-          "{:<16} seed {:>2}: {} steps in {:.0f} s, {} intersections, {}{:.2f} % of node-steps in zones, at most {} pairs pushing, "
+          "{:<16} seed {:>2}: {} steps in {:.0f} s, {} intersections, {}{:.2f} % of node-steps in "
+          "zones, at most {} pairs pushing, "
           "{} impacts, {} retries, kinetic energy {:.2g} J, {}\n",
           scene, seed, trial.steps, trial.seconds, trial.intersections,
-          options.judge.empty() ? "" : fmt::format("judged: {} of {} frames intersecting, ", trial.judged_intersecting, trial.judged),
-          100.0 * share, trial.most_pairs, trial.impacts, trial.retries, trial.kinetic_J, trial.end);
+          options.judge.empty() ? ""
+                                : fmt::format("judged: {} of {} frames intersecting, ",
+                                              trial.judged_intersecting, trial.judged),
+          100.0 * share, trial.most_pairs, trial.impacts, trial.retries, trial.kinetic_J,
+          trial.end);
       std::fflush(stdout);
       rows.push_back({{"scene", scene},
                       {"solver", "contact"},
@@ -234,14 +258,18 @@ Json stress(const BenchOptions& options) {
 
 Json bench_contact(const BenchOptions& options) {
   if (options.stress >= 0) return stress(options);
-  const Experiment experiments[] = {{"ball", 161, 3.67e-3, 0.0, 0.2},
-                                    {"clump", options.full ? 161 : 81, 0.0, 0.4, options.full ? 0.6 : 0.3}};
+  const Experiment experiments[] = {
+      {"ball", 161, 3.67e-3, 0.0, 0.2},
+      {"clump", options.full ? 161 : 81, 0.0, 0.4, options.full ? 0.6 : 0.3}};
   Json rows = Json::array();
-  TextTable table({"scene", "nodes", "near ms", "impulses ms", "detection ms", "zones ms", "contact ms", "check ms", "step ms",
-                   "pairs tested", "near pairs", "impacts", "zone nodes"});
+  TextTable table({"scene", "nodes", "near ms", "impulses ms", "detection ms", "zones ms",
+                   "contact ms", "check ms", "step ms", "pairs tested", "near pairs", "impacts",
+                   "zone nodes"});
   for (const Experiment& e : experiments) measure(e, options, table, rows);
-  fmt::print("{}\nMeans a step; of clump in its heap. Paper (Figure 4, 25,921 nodes): 1,080 ms of contact a step on its machine.\n",
-             table.text());
+  fmt::print(
+      "{}\nMeans a step; of clump in its heap. Paper (Figure 4, 25,921 nodes): 1,080 ms of contact "
+      "a step on its machine.\n",
+      table.text());
   return rows;
 }
 

@@ -1,8 +1,10 @@
 #pragma once
-// Time and iterations until a method has come as near to the answer as wanted: the only fair comparison (each method's own stop rule
-// is in a norm of its own). Found in two runs: one watches the A-norm error after each iteration, the others are timed (medians, for
-// each error) and stop after as many iterations. What a method does once per topology is not in the times; the analyses of CHOLMOD and PARDISO, which
-// the paper does in every step, are, but for cholmod_reused_analysis. `auto` has some solves to look around, and its own stop rule.
+// Time and iterations until a method has come as near to the answer as wanted: the only fair
+// comparison (each method's own stop rule is in a norm of its own). Found in two runs: one watches
+// the A-norm error after each iteration, the others are timed (medians, for each error) and stop
+// after as many iterations. What a method does once per topology is not in the times; the analyses
+// of CHOLMOD and PARDISO, which the paper does in every step, are, but for cholmod_reused_analysis.
+// `auto` has some solves to look around, and its own stop rule.
 
 #include <array>
 #include <nlohmann/json.hpp>
@@ -29,10 +31,11 @@ struct EqualErrorResult {
 };
 
 // `seconds`: after which the watched run is given up. `reference`: the answer, 3N doubles.
-EqualErrorResult measure_equal_error(const LinearSystem& system, const std::string& solver, std::span<const double> reference,
-                                     double seconds);
+EqualErrorResult measure_equal_error(const LinearSystem& system, const std::string& solver,
+                                     std::span<const double> reference, double seconds);
 
-// The keys of a report's row: solver, iterations, setup_ms, ..., to_1e-3_ms, to_1e-6_iterations, ...
+// The keys of a report's row: solver, iterations, setup_ms, ..., to_1e-3_ms, to_1e-6_iterations,
+// ...
 void put(nlohmann::ordered_json& row, const EqualErrorResult& result);
 // "12.3 ms (4)": time and iterations, or "-".
 std::string text_of(const TimeToError& time);

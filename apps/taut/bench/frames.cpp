@@ -1,8 +1,10 @@
-// taut bench frames: does the choice of U matter? (paper, Section 3: "improper U causes an increment of the conditional number of Ã")
+// taut bench frames: does the choice of U matter? (paper, Section 3: "improper U causes an
+// increment of the conditional number of Ã")
 //
-// Any two orthonormal U of the same free directions differ by a rotation per node, so Ã's eigenvalues are the same, and so is everything
-// made of whole node blocks. Preconditioners that look at single rows see the difference. A state without friction, in which the touched
-// nodes have two free directions each, is solved with the same constraints in three kinds of frames.
+// Any two orthonormal U of the same free directions differ by a rotation per node, so Ã's
+// eigenvalues are the same, and so is everything made of whole node blocks. Preconditioners that
+// look at single rows see the difference. A state without friction, in which the touched nodes have
+// two free directions each, is solved with the same constraints in three kinds of frames.
 
 #include <fmt/format.h>
 
@@ -35,10 +37,15 @@ std::array<Vec3, 2> turned(const Vec3& n, Index node) {
 
 const FrameKind kinds[] = {
     {"duff", [](const Vec3& n, Index) { return orthonormal_complement(n, FrameChoice::duff); }},
-    {"paper_eq13", [](const Vec3& n, Index) { return orthonormal_complement(n, FrameChoice::paper_eq13); }},
+    {"paper_eq13",
+     [](const Vec3& n, Index) { return orthonormal_complement(n, FrameChoice::paper_eq13); }},
     {"arbitrary", turned},
 };
-constexpr const char* methods[] = {"upcg:diagonal", "upcg:projected_block_diagonal", "upcg:reduced_diagonal", "upcg:ssor", "upcg:ic0",
+constexpr const char* methods[] = {"upcg:diagonal",
+                                   "upcg:projected_block_diagonal",
+                                   "upcg:reduced_diagonal",
+                                   "upcg:ssor",
+                                   "upcg:ic0",
                                    "core_pcg"};
 struct Experiment {
   const char* scene;
@@ -60,8 +67,10 @@ ConstraintSet in_frames(const ConstraintSet& constraints, const FrameKind& kind)
 }
 
 void measure(const Experiment& experiment, const BenchOptions& options, Json& rows) {
-  Simulation simulation(read_scene(fmt::format("{}/{}.toml", options.scenes, experiment.scene),
-                                   std::vector<std::string>{"solid.0.friction=0", "solver.name=core_fast", "time.frames=100000"}));
+  Simulation simulation(
+      read_scene(fmt::format("{}/{}.toml", options.scenes, experiment.scene),
+                 std::vector<std::string>{"solid.0.friction=0", "solver.name=core_fast",
+                                          "time.frames=100000"}));
   run_into_contact(simulation, experiment.steps_in_contact);
   TextTable table({"method", "U", "iterations", "cond(M^-1 A~)"});
   Index sliding = 0;
@@ -80,7 +89,8 @@ void measure(const Experiment& experiment, const BenchOptions& options, Json& ro
         std::vector<double> x(system.rhs.size());
         const SolveSummary summary = solver->solve(system, x);
         const SpectrumEnds ends = spectrum_ends(coefficients);
-        table.add({method, kind.name, fmt::format("{}", summary.iterations), fmt::format("{:.3g}", ends.largest / ends.smallest)});
+        table.add({method, kind.name, fmt::format("{}", summary.iterations),
+                   fmt::format("{:.3g}", ends.largest / ends.smallest)});
         rows.push_back({{"scene", experiment.scene},
                         {"nodes", s.cloth().nodes()},
                         {"solver", method},
@@ -94,7 +104,8 @@ void measure(const Experiment& experiment, const BenchOptions& options, Json& ro
   StepRecord record;
   simulation.step(record);
   fmt::print(
-      "{}\n{}: {} nodes, {} of them with two free directions; tolerance {:g}. The condition is what Lanczos saw in these iterations.\n\n",
+      "{}\n{}: {} nodes, {} of them with two free directions; tolerance {:g}. The condition is "
+      "what Lanczos saw in these iterations.\n\n",
       table.text(), experiment.scene, simulation.cloth().nodes(), sliding, options.tolerance);
 }
 

@@ -1,8 +1,9 @@
-// taut bench integrators: how far each integrator ends from the exact motion, and what it costs (paper, Sections 5 and 6: thin matrices
-// against full ones).
+// taut bench integrators: how far each integrator ends from the exact motion, and what it costs
+// (paper, Sections 5 and 6: thin matrices against full ones).
 //
-// The exact motion is implicit Euler solved by Newton's method at 1/8 and 1/16 of the longest step, extrapolated: 2 x_(h/16) - x_(h/8).
-// Steps are not halved, and the linear systems are solved to 1e-6, so that nothing but the integrator differs.
+// The exact motion is implicit Euler solved by Newton's method at 1/8 and 1/16 of the longest step,
+// extrapolated: 2 x_(h/16) - x_(h/8). Steps are not halved, and the linear systems are solved to
+// 1e-6, so that nothing but the integrator differs.
 
 #include <fmt/format.h>
 
@@ -20,8 +21,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* scene_names[] = {"pinned", "ball"};
-constexpr IntegratorKind kinds[] = {IntegratorKind::semi_implicit_euler, IntegratorKind::imex, IntegratorKind::imex_adaptive,
-                                    IntegratorKind::bdf2, IntegratorKind::newton};
+constexpr IntegratorKind kinds[] = {IntegratorKind::semi_implicit_euler, IntegratorKind::imex,
+                                    IntegratorKind::imex_adaptive, IntegratorKind::bdf2,
+                                    IntegratorKind::newton};
 constexpr double longest_step = 6.67e-3;  // s; the paper's at 1,681 nodes
 constexpr int longest_steps = 60;
 constexpr int refinements[] = {1, 2, 4};
@@ -42,9 +44,12 @@ class Integrators {
 
   Json run() {
     for (const char* scene : scene_names)
-      for (const int k : options_.stiffnesses.empty() ? std::vector<int>{60, 6000} : options_.stiffnesses) measure(scene, k);
+      for (const int k :
+           options_.stiffnesses.empty() ? std::vector<int>{60, 6000} : options_.stiffnesses)
+        measure(scene, k);
     fmt::print(
-        "{}\nrms, max: distance of the nodes from the exact motion at the end, {:.3f} s, in mm; ms: of a step; stretch: the largest of any "
+        "{}\nrms, max: distance of the nodes from the exact motion at the end, {:.3f} s, in mm; "
+        "ms: of a step; stretch: the largest of any "
         "spring at any time.\n",
         table_.text(), longest_steps * longest_step);
     return std::move(rows_);
@@ -52,15 +57,16 @@ class Integrators {
 
  private:
   Motion simulate(const std::string& scene, int k, IntegratorKind kind, int refinement) const {
-    const std::vector<std::string> settings{fmt::format("cloth.grid.nodes=[{0},{0}]", side_),
-                                            fmt::format("cloth.k_stretch={}", k),
-                                            "cloth.compression=linear",
-                                            fmt::format("time.step={:.17g}", longest_step / refinement),
-                                            "time.frames=100000",
-                                            "time.max_halvings=0",
-                                            fmt::format("time.integrator={}", name_of(kind)),
-                                            "solver.name=core_fast",
-                                            "solver.tolerance=1e-6"};
+    const std::vector<std::string> settings{
+        fmt::format("cloth.grid.nodes=[{0},{0}]", side_),
+        fmt::format("cloth.k_stretch={}", k),
+        "cloth.compression=linear",
+        fmt::format("time.step={:.17g}", longest_step / refinement),
+        "time.frames=100000",
+        "time.max_halvings=0",
+        fmt::format("time.integrator={}", name_of(kind)),
+        "solver.name=core_fast",
+        "solver.tolerance=1e-6"};
     Simulation simulation(read_scene(fmt::format("{}/{}.toml", options_.scenes, scene), settings));
     Motion motion;
     StepRecord record;
@@ -71,7 +77,8 @@ class Integrators {
       motion.solves += record.contact_passes + record.newton_iterations;
       motion.worst_stretch = std::max(motion.worst_stretch, record.max_stretch);
       if (!status.ok()) motion.failure = status.message;
-      if (!(simulation.state().x[0].norm() < lost && record.max_stretch < lost)) motion.failure = "blown up";
+      if (!(simulation.state().x[0].norm() < lost && record.max_stretch < lost))
+        motion.failure = "blown up";
     }
     motion.seconds = 1e-3 * timer.milliseconds();
     motion.x = simulation.state().x;
@@ -93,13 +100,15 @@ class Integrators {
     table_.add_rule();
   }
 
-  void add(const std::string& scene, int k, IntegratorKind kind, int refinement, const Motion& motion, const std::vector<Vec3>& exact) {
+  void add(const std::string& scene, int k, IntegratorKind kind, int refinement,
+           const Motion& motion, const std::vector<Vec3>& exact) {
     double sum = 0.0, largest = 0.0;
     for (std::size_t i = 0; i < exact.size(); ++i) {
       const double distance2 = (motion.x[i] - exact[i]).squaredNorm();
       sum += distance2, largest = std::max(largest, std::sqrt(distance2));
     }
-    const double rms = std::sqrt(sum / static_cast<double>(exact.size())), h = longest_step / refinement;
+    const double rms = std::sqrt(sum / static_cast<double>(exact.size())),
+                 h = longest_step / refinement;
     Json row{{"solver", "core_fast"},       {"scene", scene},
              {"nodes", side_ * side_},      {"k_stretch", k},
              {"integrator", name_of(kind)}, {"h", h},
@@ -114,13 +123,16 @@ class Integrators {
     const bool ok = motion.failure.empty();
     table_.add({scene, fmt::format("{}", k), name_of(kind), fmt::format("{:.2f}", 1e3 * h),
                 fmt::format("{:.1f}", 1e3 * motion.seconds / motion.steps),
-                fmt::format("{:.1f}", static_cast<double>(motion.solves) / motion.steps), ok ? fmt::format("{:.2f}", 1e3 * rms) : "-",
-                ok ? fmt::format("{:.1f}", 1e3 * largest) : "-", fmt::format("{:.1f} %", 1e2 * motion.worst_stretch), motion.failure});
+                fmt::format("{:.1f}", static_cast<double>(motion.solves) / motion.steps),
+                ok ? fmt::format("{:.2f}", 1e3 * rms) : "-",
+                ok ? fmt::format("{:.1f}", 1e3 * largest) : "-",
+                fmt::format("{:.1f} %", 1e2 * motion.worst_stretch), motion.failure});
   }
 
   BenchOptions options_;
   int side_;
-  TextTable table_{{"scene", "k_strh", "integrator", "h ms", "ms", "solves", "rms mm", "max mm", "stretch", "remark"}};
+  TextTable table_{{"scene", "k_strh", "integrator", "h ms", "ms", "solves", "rms mm", "max mm",
+                    "stretch", "remark"}};
   Json rows_ = Json::array();
 };
 

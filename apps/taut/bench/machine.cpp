@@ -65,10 +65,13 @@ MachineFacts machine_facts(bool measure) {
   MachineFacts facts;
   facts.processor = processor_name();
   facts.processors = static_cast<int>(std::thread::hardware_concurrency());
-  facts.memory_GB = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE)) / 1e9;
+  facts.memory_GB = static_cast<double>(sysconf(_SC_PHYS_PAGES)) *
+                    static_cast<double>(sysconf(_SC_PAGE_SIZE)) / 1e9;
   facts.instruction_set = instruction_set();
   facts.threads = thread_count();
-  if (measure) facts.read_GB_per_s = far_larger_than_caches / time_reads(far_larger_than_caches, 7).first / 1e6;
+  if (measure)
+    facts.read_GB_per_s =
+        far_larger_than_caches / time_reads(far_larger_than_caches, 7).first / 1e6;
   return facts;
 }
 
@@ -83,9 +86,10 @@ nlohmann::ordered_json to_json(const MachineFacts& facts) {
 }
 
 std::string to_line(const MachineFacts& facts) {
-  return fmt::format("{}, {} processors, {:.0f} GB, {}; {} thread{}{}", facts.processor, facts.processors, facts.memory_GB,
-                     facts.instruction_set, facts.threads, facts.threads == 1 ? "" : "s",
-                     facts.read_GB_per_s > 0.0 ? fmt::format(", reads {:.1f} GB/s", facts.read_GB_per_s) : "");
+  return fmt::format(
+      "{}, {} processors, {:.0f} GB, {}; {} thread{}{}", facts.processor, facts.processors,
+      facts.memory_GB, facts.instruction_set, facts.threads, facts.threads == 1 ? "" : "s",
+      facts.read_GB_per_s > 0.0 ? fmt::format(", reads {:.1f} GB/s", facts.read_GB_per_s) : "");
 }
 
 }  // namespace taut::app

@@ -15,9 +15,11 @@ struct MachineFacts {
   int threads = 0;
 };
 
-// Reads /proc; with `measure`, also the read bandwidth: the best of several sums over an array far larger than the caches.
+// Reads /proc; with `measure`, also the read bandwidth: the best of several sums over an array far
+// larger than the caches.
 MachineFacts machine_facts(bool measure);
-// The rate, GB/s, at which all threads together read an array of `bytes` again and again: what fits into a cache comes from there. Median of several reads.
+// The rate, GB/s, at which all threads together read an array of `bytes` again and again: what fits
+// into a cache comes from there. Median of several reads.
 double read_rate(double bytes);
 nlohmann::ordered_json to_json(const MachineFacts& facts);
 std::string to_line(const MachineFacts& facts);

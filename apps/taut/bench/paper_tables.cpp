@@ -70,10 +70,11 @@ const PaperRow rows[] = {
 
 std::span<const PaperRow> paper_rows() { return rows; }
 
-const PaperRow* paper_row(std::string_view scene, int nodes, std::string_view integrator, int k_stretch, std::string_view method) {
+const PaperRow* paper_row(std::string_view scene, int nodes, std::string_view integrator,
+                          int k_stretch, std::string_view method) {
   for (const PaperRow& row : rows)
-    if (row.scene == scene && row.nodes == nodes && row.integrator == integrator && (row.k_stretch == k_stretch || row.k_stretch == 0) &&
-        row.method == method)
+    if (row.scene == scene && row.nodes == nodes && row.integrator == integrator &&
+        (row.k_stretch == k_stretch || row.k_stretch == 0) && row.method == method)
       return &row;
   return nullptr;
 }

@@ -1,5 +1,6 @@
 #pragma once
-// What this machine's arithmetic can do at best, measured: independent chains of fused multiply-adds in registers, on all of Taut's threads.
+// What this machine's arithmetic can do at best, measured: independent chains of fused
+// multiply-adds in registers, on all of Taut's threads.
 
 namespace taut::app {
 

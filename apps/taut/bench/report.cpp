@@ -20,7 +20,8 @@ nlohmann::ordered_json to_json(const ReportRow& row, int threads) {
                               {"setup_ms", c.setup_ms},
                               {"solve_ms", c.solve_ms},
                               {"total_ms", c.total_ms()}};
-  if (c.ratio > 0.0) json["ratio_to_cholmod_full"] = c.ratio, json["step_ratio_to_cholmod_full"] = c.step_ratio;
+  if (c.ratio > 0.0)
+    json["ratio_to_cholmod_full"] = c.ratio, json["step_ratio_to_cholmod_full"] = c.step_ratio;
   json["anorm_error"] = c.anorm_error;
   json["relative_residual"] = c.relative_residual;
   json["memory_MB"] = c.memory_MB;

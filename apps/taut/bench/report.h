@@ -1,5 +1,6 @@
 #pragma once
-// What a bench has measured, for people (text) and for programs (the JSON that docs/bench.md describes).
+// What a bench has measured, for people (text) and for programs (the JSON that docs/bench.md
+// describes).
 
 #include <nlohmann/json.hpp>
 #include <string>

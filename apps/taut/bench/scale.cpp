@@ -1,9 +1,11 @@
 // taut bench scale: time and memory against the number of nodes, and the exponents.
 //
-// The ball touches the sheet from the start, so that a few steps suffice at a million nodes. Mass of a node, stiffnesses and step are those
-// of the paper's largest sheet at every size: what changes is the size. The answer is known at every size without a direct solve: x* is
-// what the step's own solver found, and b is replaced by A x*, whose exact answer x* is; cloth-cloth contact is not looked for, because the
-// matrix does not depend on it. A time is also given in products with A, which grow with the size alone.
+// The ball touches the sheet from the start, so that a few steps suffice at a million nodes. Mass
+// of a node, stiffnesses and step are those of the paper's largest sheet at every size: what
+// changes is the size. The answer is known at every size without a direct solve: x* is what the
+// step's own solver found, and b is replaced by A x*, whose exact answer x* is; cloth-cloth contact
+// is not looked for, because the matrix does not depend on it. A time is also given in products
+// with A, which grow with the size alone.
 
 #include <fmt/format.h>
 
@@ -41,7 +43,7 @@ double available_MB() {
 }
 
 // Slope of log(value) over log(nodes), least squares; NaN with fewer than two samples.
-double exponent(const std::vector<Sample>& samples, double Sample::*value) {
+double exponent(const std::vector<Sample>& samples, double Sample::* value) {
   double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
   for (const Sample& sample : samples) {
     if (!(sample.*value > 0.0)) continue;
@@ -51,7 +53,9 @@ double exponent(const std::vector<Sample>& samples, double Sample::*value) {
   return n < 2 ? NAN : (n * sxy - sx * sy) / (n * sxx - sx * sx);
 }
 
-std::string exponent_text(double value) { return std::isfinite(value) ? fmt::format("n^{:.2f}", value) : "-"; }
+std::string exponent_text(double value) {
+  return std::isfinite(value) ? fmt::format("n^{:.2f}", value) : "-";
+}
 
 // Of a square grid of another size, bilinearly.
 std::vector<Vec3> interpolated(const std::vector<Vec3>& values, int from, int to) {
@@ -81,12 +85,15 @@ class Scale {
   explicit Scale(const BenchOptions& options)
       : options_(options),
         methods_(methods_of(options)),
-        table_({"nodes", "method", "to 1e-3 ms", "in products", "to 1e-6 ms", "set-up", "memory MB", "A-error", "remark"}) {}
+        table_({"nodes", "method", "to 1e-3 ms", "in products", "to 1e-6 ms", "set-up", "memory MB",
+                "A-error", "remark"}) {}
 
   Json run() {
     std::vector<int> sizes = options_.nodes;
     if (sizes.empty())
-      for (const int side : std::span(all_sides).first(options_.full ? std::size(all_sides) : default_sides)) sizes.push_back(side * side);
+      for (const int side :
+           std::span(all_sides).first(options_.full ? std::size(all_sides) : default_sides))
+        sizes.push_back(side * side);
     for (const int nodes : sizes) side_of(nodes);
     fmt::print(stderr, "scale: {} nodes into contact ...\n", start_side * start_side);
     coarse_ = std::make_unique<Simulation>(sheet(start_side));
@@ -102,13 +109,11 @@ class Scale {
 
   Simulation sheet(int side) const {
     const std::vector<std::string> settings{fmt::format("cloth.grid.nodes=[{0},{0}]", side),
-                                            "cloth.k_stretch=6000",
-                                            "time.step=3.67e-3",
-                                            "time.frames=100000",
-                                            "contact.self=false",
-                                            // The answer of the step is the reference: it must be better than what is measured against it.
-                                            "solver.name=core_fast",
-                                            "solver.tolerance=1e-9"};
+                                            "cloth.k_stretch=6000", "time.step=3.67e-3",
+                                            "time.frames=100000", "contact.self=false",
+                                            // The answer of the step is the reference: it must be
+                                            // better than what is measured against it.
+                                            "solver.name=core_fast", "solver.tolerance=1e-9"};
     return Simulation(read_scene(options_.scenes + "/ball.toml", settings));
   }
 
@@ -119,7 +124,8 @@ class Scale {
     simulation.restore(interpolated(coarse_->state(), start_side, side), {}, coarse_->steps_done());
     StepRecord record;
     for (int step = 0; step < own_steps; ++step)
-      if (const Status status = simulation.step(record); !status.ok()) throw InputError(status.message);
+      if (const Status status = simulation.step(record); !status.ok())
+        throw InputError(status.message);
     bool measured = false;
     simulation.on_solved = [&](Simulation& s, const SolveSummary&) {
       if (!measured) measure_system(s, nodes);
@@ -152,7 +158,8 @@ class Scale {
         continue;
       }
       fmt::print(stderr, "scale:   {}\n", method);
-      const EqualErrorResult result = measure_equal_error(system, method, reference, options_.seconds_limit);
+      const EqualErrorResult result =
+          measure_equal_error(system, method, reference, options_.seconds_limit);
       put(row, result);
       row["product_ms"] = product_ms_;
       rows_.push_back(std::move(row));
@@ -161,35 +168,42 @@ class Scale {
     table_.add_rule();
   }
 
-  // What the sizes so far let expect, so that a bench neither swaps nor runs for hours: the reason to leave a method out, or nothing.
+  // What the sizes so far let expect, so that a bench neither swaps nor runs for hours: the reason
+  // to leave a method out, or nothing.
   std::string too_much(const std::string& method, double nodes) const {
     const auto found = samples_.find(method);
     if (found == samples_.end() || found->second.empty()) return "";
     const Sample& last = found->second.back();
-    const double memory = last.memory_MB * std::pow(nodes / last.nodes, 1.25), seconds = 1e-3 * last.ms * std::pow(nodes / last.nodes, 1.5);
+    const double memory = last.memory_MB * std::pow(nodes / last.nodes, 1.25),
+                 seconds = 1e-3 * last.ms * std::pow(nodes / last.nodes, 1.5);
     if (const double room = available_MB(); room > 0.0 && memory > 0.7 * room)
       return fmt::format("left out: would take about {:.0f} GB", memory / 1000.0);
-    if (seconds > options_.seconds_limit) return fmt::format("left out: would take about {:.0f} s", seconds);
+    if (seconds > options_.seconds_limit)
+      return fmt::format("left out: would take about {:.0f} s", seconds);
     return "";
   }
 
   void note(int nodes, const EqualErrorResult& result) {
-    samples_[result.solver].push_back({double(nodes), result.to[0].ms, result.summary.memory_bytes / 1e6});
+    samples_[result.solver].push_back(
+        {double(nodes), result.to[0].ms, result.summary.memory_bytes / 1e6});
     table_.add({fmt::format("{}", nodes), result.solver, text_of(result.to[0]),
-                result.to[0].reached() ? fmt::format("{:.0f}", result.to[0].ms / product_ms_) : "-", text_of(result.to[1]),
+                result.to[0].reached() ? fmt::format("{:.0f}", result.to[0].ms / product_ms_) : "-",
+                text_of(result.to[1]),
                 fmt::format("{:.1f}", result.summary.total_ms() - result.summary.solve_ms),
                 fmt::format("{:.1f}", result.summary.memory_bytes / 1e6),
-                result.anorm_error >= 0 ? fmt::format("{:.1e}", result.anorm_error) : "-", result.status.message});
+                result.anorm_error >= 0 ? fmt::format("{:.1e}", result.anorm_error) : "-",
+                result.status.message});
   }
 
   void print_exponents() const {
     TextTable table({"method", "time to 1e-3", "memory"});
     for (const std::string& method : methods_)
       if (const auto found = samples_.find(method); found != samples_.end())
-        table.add(
-            {method, exponent_text(exponent(found->second, &Sample::ms)), exponent_text(exponent(found->second, &Sample::memory_MB))});
+        table.add({method, exponent_text(exponent(found->second, &Sample::ms)),
+                   exponent_text(exponent(found->second, &Sample::memory_MB))});
     fmt::print(
-        "Fitted over all sizes (n nodes):\n{}\nTimes: ms (#iterations), set-up included; the first also in products A x. Mass of a node, stiffnesses and step are the same "
+        "Fitted over all sizes (n nodes):\n{}\nTimes: ms (#iterations), set-up included; the first "
+        "also in products A x. Mass of a node, stiffnesses and step are the same "
         "at all sizes.\n",
         table.text());
   }

@@ -12,12 +12,14 @@
 namespace taut::app {
 
 std::vector<std::string> methods_of(const BenchOptions& options) {
-  for (const std::string& name : options.methods) make_solver({.name = name});  // throws for one that there is not
+  // throws for one that there is not
+  for (const std::string& name : options.methods) make_solver({.name = name});
   if (!options.methods.empty()) return options.methods;
   const std::vector<std::string> known = solver_names();
   std::vector<std::string> methods;
-  for (const char* name : {"cholmod", "cholmod_reused_analysis", "pardiso", "block_cholesky", "mpcg:block_diagonal", "upcg:ic0_core",
-                           "upcg:ic0", "upcg:amg", "core_pcg", "core_fast", "auto"})
+  for (const char* name :
+       {"cholmod", "cholmod_reused_analysis", "pardiso", "block_cholesky", "mpcg:block_diagonal",
+        "upcg:ic0_core", "upcg:ic0", "upcg:amg", "core_pcg", "core_fast", "auto"})
     if (std::ranges::count(known, name)) methods.emplace_back(name);
   return methods;
 }
@@ -25,7 +27,10 @@ std::vector<std::string> methods_of(const BenchOptions& options) {
 int side_of(int nodes) {
   const int side = static_cast<int>(std::lround(std::sqrt(nodes)));
   if (side < 2 || side * side != nodes)
-    throw InputError(fmt::format("--nodes {}: the sheet is a square grid, so its nodes are a square number of at least 4, as 6561", nodes));
+    throw InputError(
+        fmt::format("--nodes {}: the sheet is a square grid, so its nodes are a square number of "
+                    "at least 4, as 6561",
+                    nodes));
   return side;
 }
 
@@ -33,12 +38,14 @@ void run_into_contact(Simulation& simulation, int more) {
   constexpr int most_steps = 1000;
   StepRecord record;
   const auto advance = [&] {
-    if (const Status status = simulation.step(record); !status.ok()) throw InputError(status.message);
+    if (const Status status = simulation.step(record); !status.ok())
+      throw InputError(status.message);
   };
   do advance();
   while (record.contacts == 0 && simulation.steps_done() < most_steps);
   if (record.contacts == 0)
-    throw InputError(fmt::format("the scene '{}' came to no contact in {} steps", simulation.scene().title, most_steps));
+    throw InputError(fmt::format("the scene '{}' came to no contact in {} steps",
+                                 simulation.scene().title, most_steps));
   for (int step = 0; step < more; ++step) advance();
 }
 

@@ -69,7 +69,8 @@ class StatsPanels {
     Curve curve{name, {}, CurveStyle::line};
     const auto values = columns_.find(column), times = columns_.find("time");
     if (values == columns_.end() || times == columns_.end()) return curve;
-    const std::size_t rows = times->second.size(), stride = std::max<std::size_t>(1, rows / most_points);
+    const std::size_t rows = times->second.size(),
+                      stride = std::max<std::size_t>(1, rows / most_points);
     bool any = false;
     for (std::size_t k = 0; k < rows; k += stride) {
       curve.points.push_back({times->second[k], values->second[k]});
@@ -95,19 +96,24 @@ class StatsPanels {
 Columns read_columns(const std::filesystem::path& file) {
   const std::string text = read_file(file);
   const auto lines = lines_of(text);
-  if (lines.empty()) throw InputError({file.string()}, "holds no whole line yet; the run may just have begun");
+  if (lines.empty())
+    throw InputError({file.string()}, "holds no whole line yet; the run may just have begun");
   const auto names = fields_of(lines[0]);
   std::vector<std::vector<double>> values(names.size());
   for (std::size_t k = 1; k < lines.size(); ++k) {
     const auto fields = fields_of(lines[k]);
     if (fields.size() != names.size())
       throw InputError({file.string(), static_cast<int>(k) + 1},
-                       std::to_string(fields.size()) + " fields, but the header names " + std::to_string(names.size()) + " columns");
+                       std::to_string(fields.size()) + " fields, but the header names " +
+                           std::to_string(names.size()) + " columns");
     for (std::size_t c = 0; c < names.size(); ++c) values[c].push_back(number(fields[c]));
   }
   Columns columns;
-  for (std::size_t c = 0; c < names.size(); ++c) columns[std::string(names[c])] = std::move(values[c]);
-  if (!columns.contains("time")) throw InputError({file.string(), 1}, "there is no column 'time'; a stats.csv of `taut run` was expected");
+  for (std::size_t c = 0; c < names.size(); ++c)
+    columns[std::string(names[c])] = std::move(values[c]);
+  if (!columns.contains("time"))
+    throw InputError({file.string(), 1},
+                     "there is no column 'time'; a stats.csv of `taut run` was expected");
   return columns;
 }
 
@@ -116,7 +122,8 @@ Figure stats_figure(const Columns& columns, const std::string& title, const std:
   figure.title = title;
   figure.note = note;
   StatsPanels panels(columns);
-  panels.add("iterations", AxisScale::linear, {{"iterations", "iterations"}, {"bound_iterations", "bound"}});
+  panels.add("iterations", AxisScale::linear,
+             {{"iterations", "iterations"}, {"bound_iterations", "bound"}});
   panels.add("ms a step", AxisScale::logarithmic,
              {{"step_ms", "whole step"},
               {"assemble_ms", "assembly"},
@@ -126,7 +133,8 @@ Figure stats_figure(const Columns& columns, const std::string& title, const std:
               {"contact_ms", "contact"}});
   panels.add("energy, J", AxisScale::linear, {{"kinetic_J", "kinetic"}, {"elastic_J", "elastic"}});
   panels.add("max stretch", AxisScale::linear, {{"max_stretch", "largest L/L0 - 1"}});
-  panels.add("contacts", AxisScale::linear, {{"contacts", "contacts"}, {"constraints", "constrained dofs"}});
+  panels.add("contacts", AxisScale::linear,
+             {{"contacts", "contacts"}, {"constraints", "constrained dofs"}});
   figure.panels = panels.take();
   return figure;
 }

@@ -1,5 +1,6 @@
 #pragma once
-// The paper's tables as curves: time of a step relative to CHOLMOD's on the full matrix, ours joined by lines, the paper's as points.
+// The paper's tables as curves: time of a step relative to CHOLMOD's on the full matrix, ours
+// joined by lines, the paper's as points.
 
 #include <nlohmann/json.hpp>
 

@@ -77,7 +77,8 @@ class Mp4Writer : public FilmWriter {
     std::error_code failure;
     fs::rename(unfinished_, path_, failure);
     if (failure)
-      throw InputError({path_.string()}, "cannot be written: " + failure.message() + "; check the folder's permissions and free space");
+      throw InputError({path_.string()}, "cannot be written: " + failure.message() +
+                                             "; check the folder's permissions and free space");
     return fmt::format("{}: {} pictures, {:.1f} s", path_.string(), pictures_, pictures_ / rate_);
   }
 
@@ -93,7 +94,8 @@ class Mp4Writer : public FilmWriter {
     ended_well();
     std::string said = fs::exists(said_) ? read_file(said_) : std::string();
     while (!said.empty() && said.back() == '\n') said.pop_back();
-    throw InputError({path_.string()}, "ffmpeg has failed: " + said + "\nUse --frames-only for a folder of PNG files");
+    throw InputError({path_.string()}, "ffmpeg has failed: " + said +
+                                           "\nUse --frames-only for a folder of PNG files");
   }
 
   void start(int width, int height) {
@@ -120,19 +122,23 @@ class Mp4Writer : public FilmWriter {
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
     int ends[2];
-    if (::pipe2(ends, O_CLOEXEC) != 0) throw InputError(std::string("ffmpeg cannot be started: ") + std::strerror(errno));
+    if (::pipe2(ends, O_CLOEXEC) != 0)
+      throw InputError(std::string("ffmpeg cannot be started: ") + std::strerror(errno));
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_adddup2(&actions, ends[0], 0);
     posix_spawn_file_actions_addopen(&actions, 1, "/dev/null", O_WRONLY, 0);
-    posix_spawn_file_actions_addopen(&actions, 2, said_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-    const int failure = ::posix_spawnp(&child_, "ffmpeg", &actions, nullptr, arguments.data(), environ);
+    posix_spawn_file_actions_addopen(&actions, 2, said_.c_str(), O_WRONLY | O_CREAT | O_TRUNC,
+                                     0600);
+    const int failure =
+        ::posix_spawnp(&child_, "ffmpeg", &actions, nullptr, arguments.data(), environ);
     posix_spawn_file_actions_destroy(&actions);
     ::close(ends[0]);
     pipe_ = ends[1];
     if (failure == 0) return;
     child_ = -1;
-    throw InputError({path_.string()}, std::string("ffmpeg cannot be started: ") + std::strerror(failure));
+    throw InputError({path_.string()},
+                     std::string("ffmpeg cannot be started: ") + std::strerror(failure));
   }
 
   fs::path path_, unfinished_, said_;
@@ -148,12 +154,17 @@ bool is_picture_name(const std::string& name) {
 // Those of an earlier film that was longer would become part of the new one.
 void clear_pictures(const fs::path& folder) {
   if (!fs::exists(folder)) return;
-  if (!fs::is_directory(folder)) throw InputError({folder.string()}, "is a file; give a folder for the pictures with --out, or FILE.png");
+  if (!fs::is_directory(folder))
+    throw InputError({folder.string()},
+                     "is a file; give a folder for the pictures with --out, or FILE.png");
   std::vector<fs::path> pictures;
   for (const auto& entry : fs::directory_iterator(folder)) {
     if (!is_picture_name(entry.path().filename().string()))
-      throw InputError({folder.string()}, fmt::format("holds '{}', which is no picture of a film; give an empty or new folder with --out",
-                                                      entry.path().filename().string()));
+      throw InputError(
+          {folder.string()},
+          fmt::format(
+              "holds '{}', which is no picture of a film; give an empty or new folder with --out",
+              entry.path().filename().string()));
     pictures.push_back(entry.path());
   }
   for (const fs::path& picture : pictures) fs::remove(picture);
@@ -161,14 +172,20 @@ void clear_pictures(const fs::path& folder) {
 
 class PngWriter : public FilmWriter {
  public:
-  PngWriter(fs::path folder, double rate, fs::path film) : folder_(std::move(folder)), rate_(rate), film_(std::move(film)) {
+  PngWriter(fs::path folder, double rate, fs::path film)
+      : folder_(std::move(folder)), rate_(rate), film_(std::move(film)) {
     clear_pictures(folder_);
   }
-  void add(const Image& picture) override { write_png(folder_ / fmt::format("{:06}.png", pictures_++), picture); }
+  void add(const Image& picture) override {
+    write_png(folder_ / fmt::format("{:06}.png", pictures_++), picture);
+  }
   std::string finish() override {
-    std::string command = fmt::format("ffmpeg -r {} -i '{}'", rate_, (folder_ / "%06d.png").string());
-    for (const std::string& word : encoding) command += word.find('(') == std::string::npos ? " " + word : " '" + word + "'";
-    return fmt::format("{} pictures in {}; this makes a film of them:\n{} '{}'", pictures_, folder_.string(), command, film_.string());
+    std::string command =
+        fmt::format("ffmpeg -r {} -i '{}'", rate_, (folder_ / "%06d.png").string());
+    for (const std::string& word : encoding)
+      command += word.find('(') == std::string::npos ? " " + word : " '" + word + "'";
+    return fmt::format("{} pictures in {}; this makes a film of them:\n{} '{}'", pictures_,
+                       folder_.string(), command, film_.string());
   }
 
  private:
@@ -185,8 +202,10 @@ bool has_ffmpeg() {
   const char* arguments[] = {"ffmpeg", "-version", nullptr};
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
-  for (const int stream : {0, 1, 2}) posix_spawn_file_actions_addopen(&actions, stream, "/dev/null", O_RDWR, 0);
-  const int failure = ::posix_spawnp(&child, "ffmpeg", &actions, nullptr, const_cast<char**>(arguments), environ);
+  for (const int stream : {0, 1, 2})
+    posix_spawn_file_actions_addopen(&actions, stream, "/dev/null", O_RDWR, 0);
+  const int failure =
+      ::posix_spawnp(&child, "ffmpeg", &actions, nullptr, const_cast<char**>(arguments), environ);
   posix_spawn_file_actions_destroy(&actions);
   if (failure != 0) return false;
   int state = 0;
@@ -194,8 +213,11 @@ bool has_ffmpeg() {
   return WIFEXITED(state) && WEXITSTATUS(state) == 0;
 }
 
-std::unique_ptr<FilmWriter> make_mp4_writer(const fs::path& path, double rate) { return std::make_unique<Mp4Writer>(path, rate); }
-std::unique_ptr<FilmWriter> make_png_writer(const fs::path& folder, double rate, const fs::path& film) {
+std::unique_ptr<FilmWriter> make_mp4_writer(const fs::path& path, double rate) {
+  return std::make_unique<Mp4Writer>(path, rate);
+}
+std::unique_ptr<FilmWriter> make_png_writer(const fs::path& folder, double rate,
+                                            const fs::path& film) {
   return std::make_unique<PngWriter>(folder, rate, film);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
-// A film from pictures: MP4 (H.264) by ffmpeg in a process of its own; or, where ffmpeg is not installed, a folder of PNG files.
+// A film from pictures: MP4 (H.264) by ffmpeg in a process of its own; or, where ffmpeg is not
+// installed, a folder of PNG files.
 
 #include <filesystem>
 #include <memory>
@@ -21,10 +22,12 @@ class FilmWriter {
 };
 
 // A film PATH.mp4.
-std::unique_ptr<FilmWriter> make_mp4_writer(const std::filesystem::path& path, double frames_per_second);
-// FOLDER/000000.png, ...; pictures of that kind in it are replaced. Throws InputError when anything else is in it; finish() returns the
-// command that makes the film `film` of them.
-std::unique_ptr<FilmWriter> make_png_writer(const std::filesystem::path& folder, double frames_per_second,
+std::unique_ptr<FilmWriter> make_mp4_writer(const std::filesystem::path& path,
+                                            double frames_per_second);
+// FOLDER/000000.png, ...; pictures of that kind in it are replaced. Throws InputError when anything
+// else is in it; finish() returns the command that makes the film `film` of them.
+std::unique_ptr<FilmWriter> make_png_writer(const std::filesystem::path& folder,
+                                            double frames_per_second,
                                             const std::filesystem::path& film);
 
 }  // namespace taut::app

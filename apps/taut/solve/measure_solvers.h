@@ -1,5 +1,6 @@
 #pragma once
-// One system, many solvers: what each of them took and how far from the reference it ended. For `taut solve`.
+// One system, many solvers: what each of them took and how far from the reference it ended. For
+// `taut solve`.
 
 #include <string>
 #include <vector>
@@ -10,10 +11,11 @@
 namespace taut::app {
 
 struct SolveLimits {
-  // |S(b - A x)| / |S(b - A(I-S)z)| that a solver must reach to count as converged: its tolerance is made smaller until it does. 0: its own
-  // stop rule is enough.
+  // |S(b - A x)| / |S(b - A(I-S)z)| that a solver must reach to count as converged: its tolerance
+  // is made smaller until it does. 0: its own stop rule is enough.
   double residual = 0.0;
-  // For one solve; the iterations that fit are found from the first hundred. Direct methods are not stopped.
+  // For one solve; the iterations that fit are found from the first hundred. Direct methods are not
+  // stopped.
   double seconds = 60.0;
   // Solves of which the median times are taken. 0: five when one takes less than 0.2 s, else one.
   int repeats = 0;
@@ -33,7 +35,8 @@ struct HistoryPoint {
   double stop_value = 0.0;  // sqrt(δ/δ0), what the method's stop test sees
   double residual = 0.0;    // |S(b - A x)| / |S(b - A(I-S)z)|
   double anorm_error = -1.0;
-  double time_ms = 0.0;  // set-up included: the row's median times, shared out evenly over its iterations
+  // set-up included: the row's median times, shared out evenly over its iterations
+  double time_ms = 0.0;
 };
 
 struct Reference {
@@ -43,9 +46,11 @@ struct Reference {
 Reference make_reference(const LinearSystem& system);
 
 // `options.name` says which solver.
-SolverRow measure_solver(const LinearSystem& system, const SolverOptions& options, const Reference& reference, const SolveLimits& limits);
+SolverRow measure_solver(const LinearSystem& system, const SolverOptions& options,
+                         const Reference& reference, const SolveLimits& limits);
 // Solves once more, watching each iteration. Empty for a direct method.
-std::vector<HistoryPoint> record_history(const LinearSystem& system, const SolverRow& row, const Reference& reference);
+std::vector<HistoryPoint> record_history(const LinearSystem& system, const SolverRow& row,
+                                         const Reference& reference);
 
 double setup_ms(const SolveSummary& summary);  // reduction, ordering, factorisation
 

@@ -6,7 +6,9 @@
 
 namespace taut::app {
 
-// A-norm error (without a reference: true residual) against time; a curve a method, a direct method is a point.
-Figure solve_figure(const std::vector<SolverRow>& rows, const std::vector<HistoryPoint>& histories, const std::string& title);
+// A-norm error (without a reference: true residual) against time; a curve a method, a direct method
+// is a point.
+Figure solve_figure(const std::vector<SolverRow>& rows, const std::vector<HistoryPoint>& histories,
+                    const std::string& title);
 
 }  // namespace taut::app

@@ -16,7 +16,9 @@ using Json = nlohmann::ordered_json;
 
 std::string error_text(double error) { return error < 0.0 ? "" : fmt::format("{:.2e}", error); }
 
-std::string ms_text(double ms) { return ms < 1.0 ? fmt::format("{:.4f}", ms) : fmt::format("{:.2f}", ms); }
+std::string ms_text(double ms) {
+  return ms < 1.0 ? fmt::format("{:.4f}", ms) : fmt::format("{:.2f}", ms);
+}
 
 // JSON has no NaN and no infinity.
 void put_finite(Json& json, const char* key, double value) {
@@ -51,36 +53,46 @@ Json row_json(const SolverRow& row, const Json& facts, double reference_ms) {
 }  // namespace
 
 std::string solve_table(const std::vector<SolverRow>& rows) {
-  TextTable table({"solver", "status", "iterations", "setup ms", "solve ms", "solves", "memory MB", "residual", "A-norm error"});
+  TextTable table({"solver", "status", "iterations", "setup ms", "solve ms", "solves", "memory MB",
+                   "residual", "A-norm error"});
   for (const auto& [s, error, solves, options] : rows)
-    table.add({s.method == s.solver ? s.solver : s.solver + " (" + s.method + ")", name_of(s.status.outcome), std::to_string(s.iterations),
-               ms_text(setup_ms(s)), ms_text(s.solve_ms), std::to_string(solves), fmt::format("{:.2f}", s.memory_bytes / 1e6),
+    table.add({s.method == s.solver ? s.solver : s.solver + " (" + s.method + ")",
+               name_of(s.status.outcome), std::to_string(s.iterations), ms_text(setup_ms(s)),
+               ms_text(s.solve_ms), std::to_string(solves),
+               fmt::format("{:.2f}", s.memory_bytes / 1e6),
                fmt::format("{:.2e}", s.relative_residual), error_text(error)});
   return table.text();
 }
 
 std::string spectrum_text(const CoreSpectrum& spectrum, double tolerance) {
   const double condition = spectrum.smallest > 0.0 ? spectrum.largest / spectrum.smallest : 0.0;
-  std::string text = fmt::format("core: λ(P⁻¹A) from {:.4g} to {:.4g}, condition {:.4g}", spectrum.smallest, spectrum.largest, condition);
+  std::string text = fmt::format("core: λ(P⁻¹A) from {:.4g} to {:.4g}, condition {:.4g}",
+                                 spectrum.smallest, spectrum.largest, condition);
   if (spectrum.rho >= 0.0)
-    text +=
-        fmt::format("; bound: from {:.4g} to 2, condition {:.4g} (ρ = {:.4g})", 1.0 / (1.0 + spectrum.rho), spectrum.bound, spectrum.rho);
+    text += fmt::format("; bound: from {:.4g} to 2, condition {:.4g} (ρ = {:.4g})",
+                        1.0 / (1.0 + spectrum.rho), spectrum.bound, spectrum.rho);
   text += fmt::format("; iterations to {:g}: {}", tolerance, spectrum.iterations);
   if (spectrum.rho >= 0.0) text += fmt::format(", bound {}", spectrum.bound_iterations);
   return text + "\n";
 }
 
 Json to_json(const CoreSpectrum& spectrum) {
-  Json json{{"smallest", spectrum.smallest}, {"largest", spectrum.largest}, {"iterations", spectrum.iterations}};
-  if (spectrum.rho >= 0.0) json["rho"] = spectrum.rho, json["bound"] = spectrum.bound, json["bound_iterations"] = spectrum.bound_iterations;
+  Json json{{"smallest", spectrum.smallest},
+            {"largest", spectrum.largest},
+            {"iterations", spectrum.iterations}};
+  if (spectrum.rho >= 0.0)
+    json["rho"] = spectrum.rho, json["bound"] = spectrum.bound,
+    json["bound_iterations"] = spectrum.bound_iterations;
   return json;
 }
 
 Json solve_json(const std::vector<SolverRow>& rows, const Json& facts) {
   double reference_ms = 0.0;
   for (const SolverRow& row : rows)
-    if (row.summary.solver == "cholmod" && row.summary.status.ok()) reference_ms = row.summary.total_ms();
-  Json json{{"bench", "solve"}, {"machine", to_json(machine_facts(false))}, {"rows", Json::array()}};
+    if (row.summary.solver == "cholmod" && row.summary.status.ok())
+      reference_ms = row.summary.total_ms();
+  Json json{
+      {"bench", "solve"}, {"machine", to_json(machine_facts(false))}, {"rows", Json::array()}};
   for (const SolverRow& row : rows) json["rows"].push_back(row_json(row, facts, reference_ms));
   return json;
 }
@@ -102,7 +114,8 @@ Json dump_facts(const std::string& meta_file) {
 std::string history_csv(const std::vector<HistoryPoint>& points) {
   std::string text = "solver,iteration,stop_value,residual,anorm_error,time_ms\n";
   for (const HistoryPoint& p : points)
-    fmt::format_to(std::back_inserter(text), "{},{},{:.9g},{:.9g},{},{:.6g}\n", p.solver, p.iteration, p.stop_value, p.residual,
+    fmt::format_to(std::back_inserter(text), "{},{},{:.9g},{:.9g},{},{:.6g}\n", p.solver,
+                   p.iteration, p.stop_value, p.residual,
                    p.anorm_error < 0.0 ? "" : fmt::format("{:.9g}", p.anorm_error), p.time_ms);
   return text;
 }

@@ -28,21 +28,26 @@ std::string media_type(const fs::path& file) {
 fs::path page_folder() {
   if (const char* chosen = std::getenv("TAUT_VIEWER")) {
     if (fs::exists(fs::path(chosen) / "index.html")) return chosen;
-    throw InputError({chosen}, "holds no index.html, but the environment variable TAUT_VIEWER names it as the viewer's page");
+    throw InputError({chosen},
+                     "holds no index.html, but the environment variable TAUT_VIEWER names it as "
+                     "the viewer's page");
   }
   std::error_code failure;
   const fs::path program = fs::read_symlink("/proc/self/exe", failure);
-  for (const fs::path& folder : {program.parent_path().parent_path() / "share/taut/viewer", fs::path(TAUT_BUILT_PAGE)})
+  for (const fs::path& folder :
+       {program.parent_path().parent_path() / "share/taut/viewer", fs::path(TAUT_BUILT_PAGE)})
     if (fs::exists(folder / "index.html", failure)) return folder;
   throw InputError(
-      "the viewer's page has not been built; `./taut view DIR` in Taut's sources builds it (it needs Node.js 18 or newer and npm)");
+      "the viewer's page has not been built; `./taut view DIR` in Taut's sources builds it (it "
+      "needs Node.js 18 or newer and npm)");
 }
 
 PageFiles read_page(const fs::path& folder) {
   PageFiles files;
   for (const auto& entry : fs::recursive_directory_iterator(folder))
     if (entry.is_regular_file())
-      files[entry.path().lexically_relative(folder).generic_string()] = {read_file(entry.path()), media_type(entry.path())};
+      files[entry.path().lexically_relative(folder).generic_string()] = {read_file(entry.path()),
+                                                                         media_type(entry.path())};
   return files;
 }
 

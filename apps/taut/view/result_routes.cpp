@@ -21,7 +21,8 @@ std::int64_t number(const Parameters& parameters, const std::string& key, std::i
   std::int64_t value = -1;
   const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (failure != std::errc() || end != text.data() + text.size() || value < 0 || value > most)
-    throw Refusal{400, "the parameter '" + key + "' must be a number from 0 to " + std::to_string(most)};
+    throw Refusal{400,
+                  "the parameter '" + key + "' must be a number from 0 to " + std::to_string(most)};
   return value;
 }
 
@@ -33,7 +34,9 @@ std::string solid_file(const Parameters& parameters, const char* what) {
 Answer array_answer(const ArrayFile& array) {
   return {array.bytes(),
           binary,
-          [array](std::size_t offset, std::size_t most) { return array.file.read(array.header.data_start + offset, most); },
+          [array](std::size_t offset, std::size_t most) {
+            return array.file.read(array.header.data_start + offset, most);
+          },
           {}};
 }
 
@@ -48,8 +51,10 @@ class FrameReader {
     const int frame = first_ + static_cast<int>(offset / frame_bytes_);
     const std::size_t within = offset % frame_bytes_;
     if (frame != open_) array_ = (files_.*open_frame_)(frame), open_ = frame;
-    if (!array_ || array_->bytes() != frame_bytes_) throw Refusal{404, "the frames have changed meanwhile"};
-    return array_->file.read(array_->header.data_start + within, std::min(most, frame_bytes_ - within));
+    if (!array_ || array_->bytes() != frame_bytes_)
+      throw Refusal{404, "the frames have changed meanwhile"};
+    return array_->file.read(array_->header.data_start + within,
+                             std::min(most, frame_bytes_ - within));
   }
 
  private:
@@ -64,13 +69,17 @@ class FrameReader {
 
 Answer whole_answer(std::string content, std::string type) {
   const auto text = std::make_shared<const std::string>(std::move(content));
-  return {text->size(), std::move(type), [text](std::size_t offset, std::size_t most) { return text->substr(offset, most); }, {}};
+  return {text->size(),
+          std::move(type),
+          [text](std::size_t offset, std::size_t most) { return text->substr(offset, most); },
+          {}};
 }
 
 Answer ResultRoutes::answer(const std::string& name, const Parameters& parameters) {
   if (name == "state") return state();
   if (name == "scene") {
-    if (!files_.open_in_frames("triangles.npy") || !files_.has_frame(0)) throw Refusal{404, "there is no frame yet"};
+    if (!files_.open_in_frames("triangles.npy") || !files_.has_frame(0))
+      throw Refusal{404, "there is no frame yet"};
     return whole_answer(scene_json(files_).dump(), "application/json");
   }
   if (name == "triangles") return array("triangles.npy", "<i4", 3);
@@ -104,9 +113,12 @@ Answer ResultRoutes::frames(const Parameters& parameters, bool contact) const {
   if (!array || wanted == 0) throw Refusal{404, "there is no such frame yet"};
   const std::size_t bytes = array->bytes();
   if (bytes == 0) throw Refusal{404, "the frame has no nodes"};
-  const int most = std::max(1, static_cast<int>(std::min<std::size_t>(static_cast<std::size_t>(wanted), most_frame_bytes / bytes)));
+  const int most = std::max(1, static_cast<int>(std::min<std::size_t>(
+                                   static_cast<std::size_t>(wanted), most_frame_bytes / bytes)));
   int count = 1;
-  while (count < most && (contact ? files_.has_contact(first + count) : files_.has_frame(first + count))) ++count;
+  while (count < most &&
+         (contact ? files_.has_contact(first + count) : files_.has_frame(first + count)))
+    ++count;
   const auto reader = std::make_shared<FrameReader>(files_, open, first, bytes);
   return {bytes * static_cast<std::size_t>(count),
           binary,
@@ -117,7 +129,8 @@ Answer ResultRoutes::frames(const Parameters& parameters, bool contact) const {
 Answer ResultRoutes::stats(const Parameters& parameters) const {
   const auto file = files_.open("stats.csv");
   if (!file) throw Refusal{404, "there is no stats.csv yet"};
-  const std::size_t from = static_cast<std::size_t>(number(parameters, "from", std::int64_t{1} << 50));
+  const std::size_t from =
+      static_cast<std::size_t>(number(parameters, "from", std::int64_t{1} << 50));
   const std::size_t size = file->size();
   std::string rows = from < size ? file->read(from, size - from) : std::string();
   rows.resize(rows.rfind('\n') + 1);  // npos + 1 is 0

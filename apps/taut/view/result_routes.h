@@ -1,5 +1,6 @@
 #pragma once
-// What the viewer's page may ask of a results folder: see view_server.h. Several threads may call one object.
+// What the viewer's page may ask of a results folder: see view_server.h. Several threads may call
+// one object.
 
 #include <functional>
 #include <map>

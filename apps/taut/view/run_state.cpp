@@ -15,7 +15,8 @@ Status ended(const OpenFile& summary) {
   const auto json = nlohmann::json::parse(summary.read(0, summary.size()), nullptr, false);
   if (!json.is_object()) return {"crashed", "summary.json cannot be read"};
   const auto text = [&](const char* key) {
-    return json.contains(key) && json[key].is_string() ? json[key].get<std::string>() : std::string();
+    return json.contains(key) && json[key].is_string() ? json[key].get<std::string>()
+                                                       : std::string();
   };
   const std::string status = text("status");
   return {status == "interrupted" || status == "failed" ? status : "finished", text("message")};
@@ -24,13 +25,17 @@ Status ended(const OpenFile& summary) {
 Status status_of(const ResultFiles& files, const std::optional<OpenFile>& stats) {
   if (stats && is_being_written(stats->descriptor())) return {"running", ""};
   if (const auto summary = files.open("summary.json")) return ended(*summary);
-  if (stats) return {"crashed", "the simulator is gone and has left no summary: it was killed, or the machine stopped"};
+  if (stats)
+    return {"crashed",
+            "the simulator is gone and has left no summary: it was killed, or the machine stopped"};
   if (files.open("scene.toml")) return {"starting", ""};
   if (files.open_in_frames("triangles.npy")) return {"finished", ""};
   return {"empty", "holds no result of `taut run` yet"};
 }
 
-std::string identity_of(const std::optional<OpenFile>& file) { return file ? file->identity() : std::string(); }
+std::string identity_of(const std::optional<OpenFile>& file) {
+  return file ? file->identity() : std::string();
+}
 
 }  // namespace
 
@@ -45,9 +50,14 @@ int RunStateReader::frame_count(const std::string& run) {
 nlohmann::ordered_json RunStateReader::read() {
   const auto stats = files_.open("stats.csv");
   const Status status = status_of(files_, stats);
-  const std::string run = identity_of(files_.open("scene.toml")) + identity_of(files_.open_in_frames("triangles.npy"));
-  return {{"status", status.name},       {"message", status.message}, {"folder", files_.folder().string()}, {"run", run},
-          {"stats", identity_of(stats)}, {"frames", frame_count(run)}};
+  const std::string run =
+      identity_of(files_.open("scene.toml")) + identity_of(files_.open_in_frames("triangles.npy"));
+  return {{"status", status.name},
+          {"message", status.message},
+          {"folder", files_.folder().string()},
+          {"run", run},
+          {"stats", identity_of(stats)},
+          {"frames", frame_count(run)}};
 }
 
 }  // namespace taut::app

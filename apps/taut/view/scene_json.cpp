@@ -38,16 +38,21 @@ Json pose_json(const Pose& pose) {
   const auto& t = pose.translation;
   const auto& q = pose.rotation;
   Json numbers = Json::array();
-  for (const double value : {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()}) numbers.push_back(rounded(value));
+  for (const double value : {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()})
+    numbers.push_back(rounded(value));
   return numbers;
 }
 
-bool moves(const Solid& solid) { return solid.key_frames.size() > 1 || solid.velocity.norm() > 0.0 || solid.angular_velocity.norm() > 0.0; }
+bool moves(const Solid& solid) {
+  return solid.key_frames.size() > 1 || solid.velocity.norm() > 0.0 ||
+         solid.angular_velocity.norm() > 0.0;
+}
 
 Json solid_json(const Solid& solid, const TimeOptions& time) {
   Json poses = Json::array();
   const int count = moves(solid) ? time.frames + 1 : 1;
-  for (int frame = 0; frame < count; ++frame) poses.push_back(pose_json(solid.pose(frame * time.steps_per_frame * time.step)));
+  for (int frame = 0; frame < count; ++frame)
+    poses.push_back(pose_json(solid.pose(frame * time.steps_per_frame * time.step)));
   return {{"name", solid.name},
           {"shape", name_of(solid.shape)},
           {"radius", solid.radius},
@@ -74,7 +79,11 @@ Json cloths_json(const ResultFiles& files, std::int64_t nodes, std::int64_t tria
     Json cloths = Json::parse(file->read(0, file->size()), nullptr, false);
     if (cloths.is_array()) return cloths;
   }
-  return {{{"name", "cloth"}, {"first_node", 0}, {"nodes", nodes}, {"first_triangle", 0}, {"triangles", triangles}}};
+  return {{{"name", "cloth"},
+           {"first_node", 0},
+           {"nodes", nodes},
+           {"first_triangle", 0},
+           {"triangles", triangles}}};
 }
 
 // Whether the run records what touches each node. What is damaged is told when it is asked for.
@@ -85,7 +94,9 @@ bool has_contact(const ResultFiles& files, std::int64_t nodes) try {
   return false;
 }
 
-std::int64_t rows(const std::optional<ArrayFile>& array) { return array ? array->header.shape[0] : 0; }
+std::int64_t rows(const std::optional<ArrayFile>& array) {
+  return array ? array->header.shape[0] : 0;
+}
 
 }  // namespace
 

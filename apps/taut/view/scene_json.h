@@ -3,10 +3,12 @@
 //
 //   title, folder, nodes, triangles, springs (0: not recorded), uv (bool)
 //   frame_s          s between frames
-//   frames_expected  frames there will be when the run ends, the one of the start included; null when scene.toml cannot be read
+//   frames_expected  frames there will be when the run ends, the one of the start included; null
+//                    when scene.toml cannot be read
 //   cloths           [{name, first_node, nodes, first_triangle, triangles}]
-//   solids           [{name, shape, radius, height, size, thickness, poses}], a pose a frame or one for all: [x, y, z, qx, qy, qz, qw], m; the
-//                    shape of a mesh is "unknown": the page says that it does not draw it
+//   solids           [{name, shape, radius, height, size, thickness, poses}], a pose a frame or one
+//                    for all: [x, y, z, qx, qy, qz, qw], m; the shape of a mesh is "unknown": the
+//                    page says that it does not draw it
 //   note             what is missing and why; empty when all is there
 //
 // Throws InputError when there is no triangles.npy.

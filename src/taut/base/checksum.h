@@ -1,6 +1,7 @@
 #pragma once
-// FNV-1a, 64 bits: h <- (h xor byte) * 0x100000001b3, from h = 0xcbf29ce484222325. Tells a damaged or changed file from the one that was
-// written; no protection against somebody who wants two files to have the same sum.
+// FNV-1a, 64 bits: h <- (h xor byte) * 0x100000001b3, from h = 0xcbf29ce484222325. Tells a damaged
+// or changed file from the one that was written; no protection against somebody who wants two files
+// to have the same sum.
 //
 // Source: Fowler, Noll, Vo, "The FNV Non-Cryptographic Hash Algorithm" (RFC 9923).
 

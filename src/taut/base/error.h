@@ -1,6 +1,7 @@
 #pragma once
-// Bad input (scene, mesh, matrix, checkpoint) is an InputError: its text names the place, what was found, what was
-// expected and what to do. A numerical outcome is never an exception: see base/status.h.
+// Bad input (scene, mesh, matrix, checkpoint) is an InputError: its text names the place, what was
+// found, what was expected and what to do. A numerical outcome is never an exception: see
+// base/status.h.
 
 #include <span>
 #include <stdexcept>
@@ -21,7 +22,8 @@ std::string located(const SourcePlace& place, const std::string& message);
 class InputError : public std::runtime_error {
  public:
   explicit InputError(const std::string& message) : std::runtime_error(message) {}
-  InputError(const SourcePlace& place, const std::string& message) : std::runtime_error(located(place, message)) {}
+  InputError(const SourcePlace& place, const std::string& message)
+      : std::runtime_error(located(place, message)) {}
 };
 
 // The name in `known` closest to `word`, for "did you mean"; empty when nothing is near.

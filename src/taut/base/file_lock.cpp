@@ -15,7 +15,7 @@ constexpr int set_lock = F_SETLK, get_lock = F_GETLK;
 
 // The whole file; l_pid must be 0.
 struct flock whole_file(short type) {
-  struct flock lock {};
+  struct flock lock{};
   lock.l_type = type;
   lock.l_whence = SEEK_SET;
   return lock;

@@ -1,11 +1,13 @@
 #pragma once
-// While a FlushSubnormals lives, this thread takes subnormal numbers (below 1e-38 in single precision, 1e-308 in double) for zero, in what
-// it reads and in what it computes. Many processors do arithmetic with them in microcode, a hundred times slower. The entries of a
-// factor fall off with the distance between nodes, so in single precision there are millions of them: a factorisation took six times as
-// long as without.
+// While a FlushSubnormals lives, this thread takes subnormal numbers (below 1e-38 in single
+// precision, 1e-308 in double) for zero, in what it reads and in what it computes. Many processors
+// do arithmetic with them in microcode, a hundred times slower. The entries of a factor fall off
+// with the distance between nodes, so in single precision there are millions of them: a
+// factorisation took six times as long as without.
 //
-// It is a property of the thread, and oneTBB sets it anew for each loop and task: so each body of a parallel loop that computes
-// with such numbers has its own, and the bits do not depend on which thread runs it.
+// It is a property of the thread, and oneTBB sets it anew for each loop and task: so each body of a
+// parallel loop that computes with such numbers has its own, and the bits do not depend on which
+// thread runs it.
 
 #include <cstdint>
 

@@ -9,7 +9,8 @@ namespace taut {
 void prefer_huge_pages([[maybe_unused]] void* begin, [[maybe_unused]] std::size_t bytes) {
 #if defined(__linux__) && defined(MADV_HUGEPAGE)
   // Whole large pages only: what follows the array may belong to somebody else.
-  if (const std::size_t whole = bytes / huge_page_bytes * huge_page_bytes; whole > 0) madvise(begin, whole, MADV_HUGEPAGE);
+  if (const std::size_t whole = bytes / huge_page_bytes * huge_page_bytes; whole > 0)
+    madvise(begin, whole, MADV_HUGEPAGE);
 #endif
 }
 
@@ -28,6 +29,8 @@ void* allocate_large(std::size_t bytes) {
   return begin;
 }
 
-void release_large(void* begin, std::size_t bytes) { ::operator delete(begin, alignment_of(bytes)); }
+void release_large(void* begin, std::size_t bytes) {
+  ::operator delete(begin, alignment_of(bytes));
+}
 
 }  // namespace taut

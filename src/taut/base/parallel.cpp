@@ -12,8 +12,9 @@
 #include <thread>
 
 #if defined(TAUT_THREAD_SANITIZER)
-// oneTBB is not compiled with the thread sanitizer and neither is this file (src/taut/CMakeLists.txt): the sanitizer is told of the
-// hand-over of work here, and sees nothing of how it is done. What the loops' bodies do it sees.
+// oneTBB is not compiled with the thread sanitizer and neither is this file
+// (src/taut/CMakeLists.txt): the sanitizer is told of the hand-over of work here, and sees nothing
+// of how it is done. What the loops' bodies do it sees.
 extern "C" void __tsan_acquire(void*);
 extern "C" void __tsan_release(void*);
 #define TAUT_TSAN_ACQUIRE(p) __tsan_acquire(p)
@@ -28,13 +29,15 @@ namespace {
 
 struct Workers {
   int count = 1;
-  std::unique_ptr<tbb::global_control> limit;  // lifts TBB's own limit when more threads than processors are asked for
+  // lifts TBB's own limit when more threads than processors are asked for
+  std::unique_ptr<tbb::global_control> limit;
   std::unique_ptr<tbb::task_arena> arena;
 
   explicit Workers(int n) { resize(n); }
   void resize(int n) {
     arena.reset();
-    limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(n));
+    limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
+                                                  static_cast<std::size_t>(n));
     arena = std::make_unique<tbb::task_arena>(n);
     count = n;
   }
@@ -54,14 +57,17 @@ void set_thread_count(int count) {
 
 int thread_count() { return workers().count; }
 
-int thread_slot() { return workers().count == 1 ? 0 : std::max(0, tbb::this_task_arena::current_thread_index()); }
+int thread_slot() {
+  return workers().count == 1 ? 0 : std::max(0, tbb::this_task_arena::current_thread_index());
+}
 
 void detail::run_parallel(Index n, Index grain, const std::function<void(Index, Index)>& body) {
   Workers& w = workers();
   char start_token = 0, end_token = 0;
   TAUT_TSAN_RELEASE(&start_token);
   w.arena->execute([&] {
-    // Isolated: a thread that waits for the end of a loop inside a task must not begin another, perhaps much longer, task meanwhile.
+    // Isolated: a thread that waits for the end of a loop inside a task must not begin another,
+    // perhaps much longer, task meanwhile.
     tbb::this_task_arena::isolate([&] {
       // A static split: the same ranges go to the same caches loop after loop.
       tbb::parallel_for(
@@ -77,14 +83,16 @@ void detail::run_parallel(Index n, Index grain, const std::function<void(Index, 
   TAUT_TSAN_ACQUIRE(&end_token);
 }
 
-void detail::run_tasks(std::span<const Index> first, const std::function<void(Index, Spawner&)>& body) {
+void detail::run_tasks(std::span<const Index> first,
+                       const std::function<void(Index, Spawner&)>& body) {
   char start_token = 0, end_token = 0;
   struct GroupSpawner final : Spawner {
     const std::function<void(Index, Spawner&)>& body;
     char *start_token, *end_token;
     tbb::task_group group;
 
-    GroupSpawner(const std::function<void(Index, Spawner&)>& b, char* start, char* end) : body(b), start_token(start), end_token(end) {}
+    GroupSpawner(const std::function<void(Index, Spawner&)>& b, char* start, char* end)
+        : body(b), start_token(start), end_token(end) {}
     void operator()(Index task) override {
       TAUT_TSAN_RELEASE(start_token);
       group.run([this, task] {

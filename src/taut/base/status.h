@@ -1,5 +1,6 @@
 #pragma once
-// How a numerical task ended. Returned, never thrown: the caller reacts (smaller step, stronger method) and says so.
+// How a numerical task ended. Returned, never thrown: the caller reacts (smaller step, stronger
+// method) and says so.
 
 #include <string>
 

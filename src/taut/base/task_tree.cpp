@@ -7,7 +7,8 @@
 
 namespace taut {
 
-TaskTree::TaskTree(std::vector<Index> parent) : parent_(std::move(parent)), child_start_(parent_.size() + 1, 0) {
+TaskTree::TaskTree(std::vector<Index> parent)
+    : parent_(std::move(parent)), child_start_(parent_.size() + 1, 0) {
   const Index n = size();
   for (Index t = 0; t < n; ++t) {
     assert(parent_[t] == -1 || (parent_[t] > t && parent_[t] < n));
@@ -28,9 +29,10 @@ TaskTree::TaskTree(std::vector<Index> parent) : parent_(std::move(parent)), chil
   plan_way_down();
 }
 
-// On the way up the thread that started the run takes leaves from the last one on, the others from the first one on, and they meet in the
-// middle. So on the way down they begin there: children near the middle come first. Of what is left to be taken, others take the oldest, the thread
-// itself the youngest.
+// On the way up the thread that started the run takes leaves from the last one on, the others from
+// the first one on, and they meet in the middle. So on the way down they begin there: children near
+// the middle come first. Of what is left to be taken, others take the oldest, the thread itself the
+// youngest.
 void TaskTree::plan_way_down() {
   std::vector<Index> first_leaf(parent_.size()), end_leaf(parent_.size());
   for (Index t = 0, leaf = 0; t < size(); ++t) {
@@ -39,12 +41,17 @@ void TaskTree::plan_way_down() {
     end_leaf[t] = leaf;
   }
   const Index middle = static_cast<Index>(leaves_.size()) / 2;
-  const auto distance = [&](Index t) { return std::max({Index{0}, first_leaf[t] - middle, middle - end_leaf[t]}); };
+  const auto distance = [&](Index t) {
+    return std::max({Index{0}, first_leaf[t] - middle, middle - end_leaf[t]});
+  };
   child_down_ = child_;
   for (Index t = 0; t < size(); ++t) {
-    const auto begin = child_down_.begin() + child_start_[t], end = child_down_.begin() + child_start_[t + 1];
+    const auto begin = child_down_.begin() + child_start_[t],
+               end = child_down_.begin() + child_start_[t + 1];
     if (begin == end) continue;
-    std::iter_swap(begin, std::min_element(begin, end, [&](Index a, Index b) { return distance(a) < distance(b); }));
+    std::iter_swap(begin, std::min_element(begin, end, [&](Index a, Index b) {
+                     return distance(a) < distance(b);
+                   }));
     std::sort(begin + 1, end, [&](Index a, Index b) {
       const bool a_is_behind = first_leaf[a] >= middle, b_is_behind = first_leaf[b] >= middle;
       return a_is_behind != b_is_behind ? b_is_behind : distance(a) > distance(b);
@@ -59,7 +66,8 @@ void run_upwards(TaskTree& tree, const std::function<void(Index)>& body, const S
     for (Index k = 0; k < beside.count; ++k) beside.body(k);
     return;
   }
-  for (Index t = 0; t < tasks; ++t) tree.open_children_[t] = static_cast<Index>(tree.children(t).size());
+  for (Index t = 0; t < tasks; ++t)
+    tree.open_children_[t] = static_cast<Index>(tree.children(t).size());
   std::atomic<Index> leaves_left = static_cast<Index>(tree.leaves().size());
   std::atomic<bool> side_tasks_left = beside.count > 0;
   // Side tasks are numbered behind the tree's.

@@ -4,14 +4,17 @@
 //   run_upwards(tree, f)     f(t) once for every task, after all its children
 //   run_downwards(tree, f)   f(t) once for every task, after its parent
 //
-// The way down goes back the way up: a thread finds most of what it reads in its own cache, since it begins where it ended.
+// The way down goes back the way up: a thread finds most of what it reads in its own cache, since
+// it begins where it ended.
 //
-// Near the root there are fewer tasks than threads. Side tasks, which need nothing of the tree's and nothing needs, fill that time: they begin
-// when a thread finds no other.
+// Near the root there are fewer tasks than threads. Side tasks, which need nothing of the tree's
+// and nothing needs, fill that time: they begin when a thread finds no other.
 //
-// Tasks are numbered so that parents come after their children. f is called from several threads; what it computes must not depend on which
-// tasks ran before, but for those above. A task may itself run parallel loops. With one thread the tasks run in the order of their numbers
-// (downwards: reversed). One run of a tree at a time: it keeps the counters of open children, so that a run allocates nothing itself.
+// Tasks are numbered so that parents come after their children. f is called from several threads;
+// what it computes must not depend on which tasks ran before, but for those above. A task may
+// itself run parallel loops. With one thread the tasks run in the order of their numbers
+// (downwards: reversed). One run of a tree at a time: it keeps the counters of open children, so
+// that a run allocates nothing itself.
 
 #include <atomic>
 #include <functional>
@@ -35,7 +38,9 @@ class TaskTree {
   explicit TaskTree(std::vector<Index> parent);
   Index size() const { return static_cast<Index>(parent_.size()); }
   Index parent(Index t) const { return parent_[t]; }
-  std::span<const Index> children(Index t) const { return {child_.data() + child_start_[t], child_.data() + child_start_[t + 1]}; }
+  std::span<const Index> children(Index t) const {
+    return {child_.data() + child_start_[t], child_.data() + child_start_[t + 1]};
+  }
   std::span<const Index> leaves() const { return leaves_; }
   std::span<const Index> roots() const { return roots_; }
 
@@ -45,11 +50,14 @@ class TaskTree {
   void plan_way_down();
 
   std::vector<Index> parent_, child_start_, child_, leaves_, roots_;
-  std::vector<Index> child_down_;  // child_ once more: first the one to go on with, then the others in the order in which they are left to be taken
+  // child_ once more: first the one to go on with, then the others in the order in which they are
+  // left to be taken
+  std::vector<Index> child_down_;
   std::unique_ptr<std::atomic<Index>[]> open_children_;
 };
 
-void run_upwards(TaskTree& tree, const std::function<void(Index)>& body, const SideTasks& beside = {});
+void run_upwards(TaskTree& tree, const std::function<void(Index)>& body,
+                 const SideTasks& beside = {});
 void run_downwards(const TaskTree& tree, const std::function<void(Index)>& body);
 
 }  // namespace taut

@@ -1,5 +1,6 @@
 #pragma once
-// Wall-clock stopwatch in milliseconds. Clocks are for reports only: no choice in Taut depends on one.
+// Wall-clock stopwatch in milliseconds. Clocks are for reports only: no choice in Taut depends on
+// one.
 
 #include <chrono>
 
@@ -7,7 +8,9 @@ namespace taut {
 
 class Timer {
  public:
-  double milliseconds() const { return std::chrono::duration<double, std::milli>(Clock::now() - start_).count(); }
+  double milliseconds() const {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start_).count();
+  }
   // Time since construction or the last lap, and start the next lap.
   double lap() {
     const double elapsed = milliseconds();

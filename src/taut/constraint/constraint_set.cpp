@@ -13,11 +13,13 @@ std::array<Vec3, 2> duff_complement(const Vec3& n) {
   const double sign = std::copysign(1.0, n.z());
   const double a = -1.0 / (sign + n.z());
   const double b = n.x() * n.y() * a;
-  return {Vec3(1.0 + sign * n.x() * n.x() * a, sign * b, -sign * n.x()), Vec3(b, sign + n.y() * n.y() * a, -n.y())};
+  return {Vec3(1.0 + sign * n.x() * n.x() * a, sign * b, -sign * n.x()),
+          Vec3(b, sign + n.y() * n.y() * a, -n.y())};
 }
 
 std::array<Vec3, 2> paper_complement(const Vec3& p) {
-  // Where s is exactly 0 the plane is that of the y and z axes (the paper has p1 = 1 only; p1 = -1 divides by zero there).
+  // Where s is exactly 0 the plane is that of the y and z axes (the paper has p1 = 1 only; p1 = -1
+  // divides by zero there).
   const double s = std::sqrt(std::max(0.0, 1.0 - p.x() * p.x()));
   if (s == 0.0) return {Vec3::UnitY(), Vec3::UnitZ()};
   return {Vec3(s, -p.x() * p.y() / s, -p.x() * p.z() / s), Vec3(0.0, -p.z() / s, p.y() / s)};
@@ -40,7 +42,8 @@ void ConstraintSet::constrain(Index i, const Vec3& n, double distance) {
   const double length = n.norm();
   assert(std::isfinite(length) && length > 0.0 && std::isfinite(distance));
   const Vec3 direction = n / length;
-  // The part of the direction that is still free becomes a new constrained direction; its distance is what the earlier ones leave over.
+  // The part of the direction that is still free becomes a new constrained direction; its distance
+  // is what the earlier ones leave over.
   const Vec3 remaining = free_part(i, direction);
   const double share = remaining.norm();
   if (share < parallel_tolerance) return;
@@ -65,7 +68,8 @@ void ConstraintSet::constrain(Index i, const Vec3& n, double distance) {
       frame.setIdentity();
       ndof_[i] = 0;
       break;
-    default: break;
+    default:
+      break;
   }
 }
 
@@ -85,19 +89,27 @@ void ConstraintSet::set_frame(Index i, int ndof, const Mat3& frame) {
 
 Mat3 ConstraintSet::projection(Index i) const {
   switch (ndof_[i]) {
-    case 3: return Mat3::Identity();
-    case 2: return frame_[i].leftCols<2>() * frame_[i].leftCols<2>().transpose();
-    case 1: return frame_[i].col(0) * frame_[i].col(0).transpose();
-    default: return Mat3::Zero();
+    case 3:
+      return Mat3::Identity();
+    case 2:
+      return frame_[i].leftCols<2>() * frame_[i].leftCols<2>().transpose();
+    case 1:
+      return frame_[i].col(0) * frame_[i].col(0).transpose();
+    default:
+      return Mat3::Zero();
   }
 }
 
 Vec3 ConstraintSet::free_part(Index i, const Vec3& a) const {
   switch (ndof_[i]) {
-    case 3: return a;
-    case 2: return frame_[i].leftCols<2>() * (frame_[i].leftCols<2>().transpose() * a);
-    case 1: return frame_[i].col(0) * frame_[i].col(0).dot(a);
-    default: return Vec3::Zero();
+    case 3:
+      return a;
+    case 2:
+      return frame_[i].leftCols<2>() * (frame_[i].leftCols<2>().transpose() * a);
+    case 1:
+      return frame_[i].col(0) * frame_[i].col(0).dot(a);
+    default:
+      return Vec3::Zero();
   }
 }
 

@@ -1,17 +1,23 @@
 #pragma once
-// Per-node constraints of one step: which directions of a node are prescribed, and how far it moves along them. docs/mathematics.md, 3,
-// paper Eq. 3, 4, 12. Nothing downstream of this type asks where a constraint came from.
+// Per-node constraints of one step: which directions of a node are prescribed, and how far it moves
+// along them. docs/mathematics.md, 3, paper Eq. 3, 4, 12. Nothing downstream of this type asks
+// where a constraint came from.
 //
 //   ndof(i)          3, 2, 1 or 0 free directions of node i
-//   U_i              3 x ndof, orthonormal columns spanning the free directions           S_i = U_i U_iᵀ
-//   displacement(i)  (I - S_i) d, m: the prescribed motion over this step, in the constrained directions only
-//   z_i              the prescribed part of the integrator's unknown, made from displacement(i) by the integrator (step/): the paper
-//                    prescribes velocities; a displacement says the same for every integrator and lets no position drift
+//   U_i              3 x ndof, orthonormal columns spanning the free directions           S_i = U_i
+//   U_iᵀ
+//   displacement(i)  (I - S_i) d, m: the prescribed motion over this step, in the constrained
+//                    directions only
+//   z_i              the prescribed part of the integrator's unknown, made from displacement(i) by
+//                    the integrator (step/): the paper prescribes velocities; a displacement says
+//                    the same for every integrator and lets no position drift
 //
-// Building it: `constrain(i, n, distance)` says n·(x_end - x_start) = distance for a unit direction n (any length > 0 is accepted, the
-// equation is taken as written); several directions of one node need not be orthogonal: d solves n_k·d = distance_k for all k. A direction
-// that adds less than `parallel_tolerance` to the span of the earlier ones is merged with them (its distance is then ignored: two nearly
-// parallel normals cannot both be met exactly). `fix(i, d)` prescribes all three.
+// Building it: `constrain(i, n, distance)` says n·(x_end - x_start) = distance for a unit direction
+// n (any length > 0 is accepted, the equation is taken as written); several directions of one node
+// need not be orthogonal: d solves n_k·d = distance_k for all k. A direction that adds less than
+// `parallel_tolerance` to the span of the earlier ones is merged with them (its distance is then
+// ignored: two nearly parallel normals cannot both be met exactly). `fix(i, d)` prescribes all
+// three.
 
 #include <array>
 #include <span>
@@ -21,14 +27,17 @@
 
 namespace taut {
 
-// sin of the angle below which two normals count as one: beyond it the solution for z would amplify errors of distance a thousandfold.
+// sin of the angle below which two normals count as one: beyond it the solution for z would amplify
+// errors of distance a thousandfold.
 constexpr double parallel_tolerance = 1e-3;
 
-// How the two free directions of an ndof = 2 node are chosen. All span the same plane: only preconditioners that are not
-// block-wise see a difference.
+// How the two free directions of an ndof = 2 node are chosen. All span the same plane: only
+// preconditioners that are not block-wise see a difference.
 enum class FrameChoice {
-  duff,       // Duff et al. 2017, "Building an orthonormal basis, revisited": no bad direction
-  paper_eq13  // the paper's closed form, its "otherwise" case repaired; loses digits near |p1| = 1, exact at both poles
+  duff,  // Duff et al. 2017, "Building an orthonormal basis, revisited": no bad direction
+  // the paper's closed form, its "otherwise" case repaired; loses digits near |p1| = 1, exact at
+  // both poles
+  paper_eq13
 };
 
 // Two orthonormal vectors orthogonal to the unit vector n.
@@ -37,7 +46,9 @@ std::array<Vec3, 2> orthonormal_complement(const Vec3& n, FrameChoice choice = F
 class ConstraintSet {
  public:
   ConstraintSet() = default;
-  explicit ConstraintSet(Index nodes, FrameChoice choice = FrameChoice::duff) { reset(nodes, choice); }
+  explicit ConstraintSet(Index nodes, FrameChoice choice = FrameChoice::duff) {
+    reset(nodes, choice);
+  }
   // All nodes free.
   void reset(Index nodes, FrameChoice choice = FrameChoice::duff);
 
@@ -45,15 +56,15 @@ class ConstraintSet {
   void constrain(Index node, const Vec3& n, double distance);
   // d = displacement (m).
   void fix(Index node, const Vec3& displacement);
-  // A node whose U_i is known already (read from a file): the first `ndof` columns of the rotation `frame`. d = 0. With ndof 3 or 0 the
-  // frame is I.
+  // A node whose U_i is known already (read from a file): the first `ndof` columns of the rotation
+  // `frame`. d = 0. With ndof 3 or 0 the frame is I.
   void set_frame(Index node, int ndof, const Mat3& frame);
 
   Index nodes() const { return static_cast<Index>(ndof_.size()); }
   int ndof(Index i) const { return ndof_[i]; }
   std::span<const std::int8_t> ndofs() const { return ndof_; }
-  // Columns of U_i: the first ndof(i) columns of this matrix; the others complete it to an orthogonal matrix and span the constrained
-  // directions.
+  // Columns of U_i: the first ndof(i) columns of this matrix; the others complete it to an
+  // orthogonal matrix and span the constrained directions.
   const Mat3& frame(Index i) const { return frame_[i]; }
   std::span<const Mat3> frames() const { return frame_; }
   const Vec3& displacement(Index i) const { return displacement_[i]; }

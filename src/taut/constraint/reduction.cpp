@@ -16,7 +16,8 @@ using Map3 = Eigen::Map<Vec3>;
 using RowMajor3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
 // out (rows x cols, row-major with `stride`) = U_iᵀ B U_j, B 3x3 row-major with `width`.
-void project_block(const double* b, Index width, const Mat3& ui, Index rows, const Mat3& uj, Index cols, double* out, Index stride) {
+void project_block(const double* b, Index width, const Mat3& ui, Index rows, const Mat3& uj,
+                   Index cols, double* out, Index stride) {
   const Eigen::Map<const RowMajor3, 0, Eigen::OuterStride<>> block(b, Eigen::OuterStride<>(width));
   const Mat3 left = rows == 3 ? Mat3(block) : Mat3(ui.transpose() * block);
   const Mat3 both = cols == 3 ? left : Mat3(left * uj);
@@ -26,13 +27,15 @@ void project_block(const double* b, Index width, const Mat3& ui, Index rows, con
 
 }  // namespace
 
-bool Reduction::pattern_is_current(const BlockCsr& a, const ConstraintSet* constraints, std::span<const std::uint8_t> mask) const {
+bool Reduction::pattern_is_current(const BlockCsr& a, const ConstraintSet* constraints,
+                                   std::span<const std::uint8_t> mask) const {
   if (!reduced_.pattern || source_pattern_ != a.pattern) return false;
   if (constraints ? !std::ranges::equal(constraints->ndofs(), ndof_) : !ndof_.empty()) return false;
   return std::ranges::equal(mask, mask_);
 }
 
-void Reduction::build_pattern(const BlockCsr& a, const ConstraintSet* constraints, std::span<const std::uint8_t> mask) {
+void Reduction::build_pattern(const BlockCsr& a, const ConstraintSet* constraints,
+                              std::span<const std::uint8_t> mask) {
   const BlockPattern& p = *a.pattern;
   const Index n = p.rows();
   assert(!constraints || (constraints->nodes() == n && p.uniform_dim == 3));
@@ -42,8 +45,10 @@ void Reduction::build_pattern(const BlockCsr& a, const ConstraintSet* constraint
   if (constraints) ndof_.assign(constraints->ndofs().begin(), constraints->ndofs().end());
 
   // Nodes without freedom keep an empty row: node numbers stay the same everywhere.
-  std::vector<Index> dof_start(static_cast<std::size_t>(n) + 1, 0), row_start(static_cast<std::size_t>(n) + 1, 0), column;
-  for (Index i = 0; i < n; ++i) dof_start[i + 1] = dof_start[i] + (constraints ? constraints->ndof(i) : p.dim(i));
+  std::vector<Index> dof_start(static_cast<std::size_t>(n) + 1, 0),
+      row_start(static_cast<std::size_t>(n) + 1, 0), column;
+  for (Index i = 0; i < n; ++i)
+    dof_start[i + 1] = dof_start[i] + (constraints ? constraints->ndof(i) : p.dim(i));
   const auto dim = [&](Index i) { return dof_start[i + 1] - dof_start[i]; };
   column.reserve(static_cast<std::size_t>(p.blocks()));
   source_block_.clear();
@@ -59,7 +64,8 @@ void Reduction::build_pattern(const BlockCsr& a, const ConstraintSet* constraint
   reduced_ = BlockCsr(make_pattern(std::move(row_start), std::move(column), std::move(dof_start)));
 }
 
-bool Reduction::update(const BlockCsr& a, const ConstraintSet* constraints, std::span<const std::uint8_t> mask) {
+bool Reduction::update(const BlockCsr& a, const ConstraintSet* constraints,
+                       std::span<const std::uint8_t> mask) {
   const bool fresh = !pattern_is_current(a, constraints, mask);
   if (fresh) build_pattern(a, constraints, mask);
   const BlockPattern& from = *a.pattern;
@@ -72,9 +78,11 @@ bool Reduction::update(const BlockCsr& a, const ConstraintSet* constraints, std:
         const double* block = a.block(i, source_block_[k]);
         double* out = reduced_.block(i, k);
         if (constraints && (rows < 3 || cols < 3)) {
-          project_block(block, width, constraints->frame(i), rows, constraints->frame(j), cols, out, stride);
+          project_block(block, width, constraints->frame(i), rows, constraints->frame(j), cols, out,
+                        stride);
         } else {
-          for (Index r = 0; r < rows; ++r) std::copy(block + r * width, block + r * width + cols, out + r * stride);
+          for (Index r = 0; r < rows; ++r)
+            std::copy(block + r * width, block + r * width + cols, out + r * stride);
         }
       }
     }
@@ -82,7 +90,8 @@ bool Reduction::update(const BlockCsr& a, const ConstraintSet* constraints, std:
   return fresh;
 }
 
-void restrict_to_free(const ConstraintSet* constraints, std::span<const double> full, std::span<double> reduced) {
+void restrict_to_free(const ConstraintSet* constraints, std::span<const double> full,
+                      std::span<double> reduced) {
   if (!constraints) {
     std::copy(full.begin(), full.end(), reduced.begin());
     return;
@@ -101,7 +110,8 @@ void restrict_to_free(const ConstraintSet* constraints, std::span<const double> 
   assert(out == static_cast<Index>(reduced.size()));
 }
 
-void prolong(const ConstraintSet* constraints, std::span<const double> reduced, std::span<const double> z, std::span<double> full) {
+void prolong(const ConstraintSet* constraints, std::span<const double> reduced,
+             std::span<const double> z, std::span<double> full) {
   if (!constraints) {
     std::copy(reduced.begin(), reduced.end(), full.begin());
     return;

@@ -14,7 +14,8 @@ namespace {
 bool has_pushed(const ContactRow& row) { return row.pushed != Vec3::Zero(); }
 bool touches_solid(const ContactRow& row) { return row.node[1] < 0; }
 
-// A row that has pushed or touches a solid, which few do. Kept apart, since a row has many bytes and these are looked at several times.
+// A row that has pushed or touches a solid, which few do. Kept apart, since a row has many bytes
+// and these are looked at several times.
 struct Push {
   Index row;
   std::array<Index, 4> node;
@@ -36,7 +37,8 @@ std::vector<Push> pushes_of(std::span<const ContactRow> rows) {
 // Nodes that rows have joined. One entry a vertex of the surface: cheaper than to look up the few.
 class Islands {
  public:
-  Islands(std::span<const Push> pushes, std::span<const double> inverse_mass) : parent_(inverse_mass.size()), attached_(parent_.size()) {
+  Islands(std::span<const Push> pushes, std::span<const double> inverse_mass)
+      : parent_(inverse_mass.size()), attached_(parent_.size()) {
     std::iota(parent_.begin(), parent_.end(), Index{0});
     for (const Push& push : pushes) add(push.node, inverse_mass);
   }
@@ -63,7 +65,8 @@ class Islands {
     assert(free >= 0);
     if (attached) attached_[island(free)] = 1;
   }
-  // The one with the least node is kept, so that the order of islands does not depend on that of rows.
+  // The one with the least node is kept, so that the order of islands does not depend on that of
+  // rows.
   void join(Index a, Index b) {
     const Index p = island(a), q = island(b), kept = std::min(p, q), lost = std::max(p, q);
     parent_[lost] = kept;
@@ -82,7 +85,8 @@ struct Turn {
   Vec3 angle = Vec3::Zero();    // rad
 };
 
-// Two points have no inertia about their line, nor can rows between them add momentum about it: the least of the solutions.
+// Two points have no inertia about their line, nor can rows between them add momentum about it: the
+// least of the solutions.
 Vec3 least_angle(const Turn& turn) {
   Eigen::CompleteOrthogonalDecomposition<Mat3> decomposition;
   decomposition.setThreshold(1e-10);
@@ -92,8 +96,9 @@ Vec3 least_angle(const Turn& turn) {
 
 }  // namespace
 
-void restore_angular_momentum(std::span<const ContactRow> rows, std::span<const double> mass, std::span<const double> inverse_mass,
-                              std::span<const Vec3> lever, std::span<Vec3> x1, std::span<std::uint8_t> moved) {
+void restore_angular_momentum(std::span<const ContactRow> rows, std::span<const double> mass,
+                              std::span<const double> inverse_mass, std::span<const Vec3> lever,
+                              std::span<Vec3> x1, std::span<std::uint8_t> moved) {
   const std::vector<Push> pushes = pushes_of(rows);
   if (pushes.empty()) return;
   Islands islands(pushes, inverse_mass);
@@ -102,11 +107,14 @@ void restore_angular_momentum(std::span<const ContactRow> rows, std::span<const 
   std::vector<std::pair<Index, Index>> members;  // node and its turn
   const auto add = [&](const Push& push) {
     if (push.node[1] < 0) return;
-    const auto free = std::ranges::find_if(push.node, [&](Index node) { return inverse_mass[node] > 0.0; });
+    const auto free =
+        std::ranges::find_if(push.node, [&](Index node) { return inverse_mass[node] > 0.0; });
     const Index island = islands.island(*free);
     if (islands.is_attached(island)) return;
-    if (turn_of[island] < 0) turn_of[island] = static_cast<Index>(turns.size()), turns.emplace_back();
-    turns[turn_of[island]].missing -= separation(rows[push.row], lever).cross(rows[push.row].pushed);
+    if (turn_of[island] < 0)
+      turn_of[island] = static_cast<Index>(turns.size()), turns.emplace_back();
+    turns[turn_of[island]].missing -=
+        separation(rows[push.row], lever).cross(rows[push.row].pushed);
   };
   for (const Push& push : pushes) add(push);
   if (turns.empty()) return;

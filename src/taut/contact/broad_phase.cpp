@@ -74,32 +74,39 @@ void BroadPhase::refit(std::span<const Vec3> x0, std::span<const Vec3> x1, doubl
       if (!still) trees.boxes[v].at[1] = box_around(x1[v], 0.5 * margin);
     }
   });
-  for (BoxTree* tree : {&trees.vertices, &trees.edges, &trees.triangles}) tree->refit(trees.boxes, still);
+  for (BoxTree* tree : {&trees.vertices, &trees.edges, &trees.triangles})
+    tree->refit(trees.boxes, still);
 }
 
-void BroadPhase::refit_moved(std::span<const Vec3> x0, std::span<const Vec3> x1, double margin, std::span<const std::uint8_t> moved) {
+void BroadPhase::refit_moved(std::span<const Vec3> x0, std::span<const Vec3> x1, double margin,
+                             std::span<const std::uint8_t> moved) {
   Trees& trees = *trees_;
   assert(x0.data() != x1.data());
   if (trees.vertices.still()) return refit(x0, x1, margin);
   for (Index v = 0; v < surface_->vertices; ++v)
-    if (moved[v]) trees.boxes[v] = {{box_around(x0[v], 0.5 * margin), box_around(x1[v], 0.5 * margin)}};
-  for (BoxTree* tree : {&trees.vertices, &trees.edges, &trees.triangles}) tree->refit_moved(trees.boxes, moved);
+    if (moved[v])
+      trees.boxes[v] = {{box_around(x0[v], 0.5 * margin), box_around(x1[v], 0.5 * margin)}};
+  for (BoxTree* tree : {&trees.vertices, &trees.edges, &trees.triangles})
+    tree->refit_moved(trees.boxes, moved);
 }
 
 Index BroadPhase::vertex_parts() const { return detail::parts_of(trees_->vertices); }
 Index BroadPhase::edge_parts() const { return detail::parts_of(trees_->edges); }
 
-void BroadPhase::for_vertex_triangle(const UsePart<VertexTriangle>& use, std::span<const std::uint8_t> moved) const {
+void BroadPhase::for_vertex_triangle(const UsePart<VertexTriangle>& use,
+                                     std::span<const std::uint8_t> moved) const {
   const auto pair = [](Index vertex, Index triangle) { return VertexTriangle{vertex, triangle}; };
   detail::query<1, 3, VertexTriangle>(trees_->vertices, trees_->triangles, moved, pair, use);
 }
 
-void BroadPhase::for_edge_edge(const UsePart<EdgeEdge>& use, std::span<const std::uint8_t> moved) const {
+void BroadPhase::for_edge_edge(const UsePart<EdgeEdge>& use,
+                               std::span<const std::uint8_t> moved) const {
   const auto pair = [](Index a, Index b) { return EdgeEdge{std::min(a, b), std::max(a, b)}; };
   detail::query<2, 2, EdgeEdge>(trees_->edges, trees_->edges, moved, pair, use);
 }
 
-void BroadPhase::for_edge_triangle(const UsePart<EdgeTriangle>& use, std::span<const std::uint8_t> moved) const {
+void BroadPhase::for_edge_triangle(const UsePart<EdgeTriangle>& use,
+                                   std::span<const std::uint8_t> moved) const {
   const auto pair = [](Index edge, Index triangle) { return EdgeTriangle{edge, triangle}; };
   detail::query<2, 3, EdgeTriangle>(trees_->edges, trees_->triangles, moved, pair, use);
 }
@@ -110,27 +117,32 @@ namespace {
 template <class Pair, class ForPairs>
 void join(Index parts, const ForPairs& for_pairs, std::vector<Pair>& pairs) {
   std::vector<std::vector<Pair>> found(static_cast<std::size_t>(parts));
-  for_pairs(
-      [&](Index part, std::span<const Pair> of_part) { found[static_cast<std::size_t>(part)].assign(of_part.begin(), of_part.end()); });
+  for_pairs([&](Index part, std::span<const Pair> of_part) {
+    found[static_cast<std::size_t>(part)].assign(of_part.begin(), of_part.end());
+  });
   pairs.clear();
   for (const auto& list : found) pairs.insert(pairs.end(), list.begin(), list.end());
 }
 
 }  // namespace
 
-void BroadPhase::find_vertex_triangle(std::vector<VertexTriangle>& pairs, std::span<const std::uint8_t> moved) const {
+void BroadPhase::find_vertex_triangle(std::vector<VertexTriangle>& pairs,
+                                      std::span<const std::uint8_t> moved) const {
   join(
-      vertex_parts(), [&](const UsePart<VertexTriangle>& use) { for_vertex_triangle(use, moved); }, pairs);
+      vertex_parts(), [&](const UsePart<VertexTriangle>& use) { for_vertex_triangle(use, moved); },
+      pairs);
 }
 
-void BroadPhase::find_edge_edge(std::vector<EdgeEdge>& pairs, std::span<const std::uint8_t> moved) const {
-  join(
-      edge_parts(), [&](const UsePart<EdgeEdge>& use) { for_edge_edge(use, moved); }, pairs);
+void BroadPhase::find_edge_edge(std::vector<EdgeEdge>& pairs,
+                                std::span<const std::uint8_t> moved) const {
+  join(edge_parts(), [&](const UsePart<EdgeEdge>& use) { for_edge_edge(use, moved); }, pairs);
 }
 
-void BroadPhase::find_edge_triangle(std::vector<EdgeTriangle>& pairs, std::span<const std::uint8_t> moved) const {
+void BroadPhase::find_edge_triangle(std::vector<EdgeTriangle>& pairs,
+                                    std::span<const std::uint8_t> moved) const {
   join(
-      edge_parts(), [&](const UsePart<EdgeTriangle>& use) { for_edge_triangle(use, moved); }, pairs);
+      edge_parts(), [&](const UsePart<EdgeTriangle>& use) { for_edge_triangle(use, moved); },
+      pairs);
 }
 
 }  // namespace taut

@@ -1,18 +1,21 @@
 #pragma once
 // Broad phase: which vertices, edges and triangles of a surface may come near each other in a step.
 //
-//   moving box  of a vertex, an edge or a triangle: the smallest box around its corners at x0 and that at x1 (m), and all that lie between
-//               the two in the course of the step. Straight paths stay inside
-//   margin      m: every pair is reported that is not more than `margin` apart along one axis, on the same side, at x0 and at x1; so every
-//               pair that is ever within `margin` of each other during the step (the reverse does not hold). Cloth that flies as a whole
+//   moving box  of a vertex, an edge or a triangle: the smallest box around its corners at x0 and
+//               that at x1 (m), and all that lie between the two in the course of the step.
+//               Straight paths stay inside
+//   margin      m: every pair is reported that is not more than `margin` apart along one axis, on
+//               the same side, at x0 and at x1; so every pair that is ever within `margin` of each
+//               other during the step (the reverse does not hold). Cloth that flies as a whole
 //               gives no more pairs than cloth at rest
 //
-// Left out: pairs that share a vertex; pairs with both sides on solids; where `moved` is given, pairs without a vertex marked in it.
-// Each remaining pair is reported once. Lists come in an order that depends on the surface and the positions, not on the number of threads.
+// Left out: pairs that share a vertex; pairs with both sides on solids; where `moved` is given,
+// pairs without a vertex marked in it. Each remaining pair is reported once. Lists come in an order
+// that depends on the surface and the positions, not on the number of threads.
 //
-// Method: one packed tree of eight children a node for vertices, edges and triangles each, ordered once by halving the positions given to
-// the constructor. Boxes are stored as floats, rounded outwards. refit is O(n) and moves no node; a query takes blocks of 64 items through
-// a tree.
+// Method: one packed tree of eight children a node for vertices, edges and triangles each, ordered
+// once by halving the positions given to the constructor. Boxes are stored as floats, rounded
+// outwards. refit is O(n) and moves no node; a query takes blocks of 64 items through a tree.
 
 #include <cstdint>
 #include <functional>
@@ -39,34 +42,41 @@ struct EdgeTriangle {
 
 class BroadPhase {
  public:
-  // Keeps a reference to the surface, which must outlive it. `positions` (m, one a vertex) decide how the trees are grouped: any will do,
-  // the shape at the start of a simulation does well.
+  // Keeps a reference to the surface, which must outlive it. `positions` (m, one a vertex) decide
+  // how the trees are grouped: any will do, the shape at the start of a simulation does well.
   BroadPhase(const CollisionSurface& surface, std::span<const Vec3> positions);
   ~BroadPhase();
   BroadPhase(BroadPhase&&) noexcept;
   BroadPhase& operator=(BroadPhase&&) noexcept;
 
-  // Sets all boxes for a step from x0 to x1 (m, one a vertex each; the same span twice for a shape at rest). margin >= 0, m.
-  // A vertex that is not finite gets a box around everything.
+  // Sets all boxes for a step from x0 to x1 (m, one a vertex each; the same span twice for a shape
+  // at rest). margin >= 0, m. A vertex that is not finite gets a box around everything.
   void refit(std::span<const Vec3> x0, std::span<const Vec3> x1, double margin);
-  // The same, where since the last refit only vertices marked in `moved` have got another way, with the same margin.
-  void refit_moved(std::span<const Vec3> x0, std::span<const Vec3> x1, double margin, std::span<const std::uint8_t> moved);
+  // The same, where since the last refit only vertices marked in `moved` have got another way, with
+  // the same margin.
+  void refit_moved(std::span<const Vec3> x0, std::span<const Vec3> x1, double margin,
+                   std::span<const std::uint8_t> moved);
 
-  // Lists of pairs come in parts, so that each can be worked on while it is fresh: use(part, pairs) is called at most once for each of the
-  // parts 0 ... parts-1, from several threads at once; put together in order, with nothing for the others, they are the list.
-  // moved: empty for all pairs, or one byte a vertex, not 0 where it moved.
+  // Lists of pairs come in parts, so that each can be worked on while it is fresh: use(part, pairs)
+  // is called at most once for each of the parts 0 ... parts-1, from several threads at once; put
+  // together in order, with nothing for the others, they are the list. moved: empty for all pairs,
+  // or one byte a vertex, not 0 where it moved.
   template <class Pair>
   using UsePart = std::function<void(Index part, std::span<const Pair> pairs)>;
   Index vertex_parts() const;  // of lists of pairs with a vertex
   Index edge_parts() const;    // of the others
-  void for_vertex_triangle(const UsePart<VertexTriangle>& use, std::span<const std::uint8_t> moved = {}) const;
+  void for_vertex_triangle(const UsePart<VertexTriangle>& use,
+                           std::span<const std::uint8_t> moved = {}) const;
   void for_edge_edge(const UsePart<EdgeEdge>& use, std::span<const std::uint8_t> moved = {}) const;
-  void for_edge_triangle(const UsePart<EdgeTriangle>& use, std::span<const std::uint8_t> moved = {}) const;
+  void for_edge_triangle(const UsePart<EdgeTriangle>& use,
+                         std::span<const std::uint8_t> moved = {}) const;
 
   // The whole lists. Replace `pairs`.
-  void find_vertex_triangle(std::vector<VertexTriangle>& pairs, std::span<const std::uint8_t> moved = {}) const;
+  void find_vertex_triangle(std::vector<VertexTriangle>& pairs,
+                            std::span<const std::uint8_t> moved = {}) const;
   void find_edge_edge(std::vector<EdgeEdge>& pairs, std::span<const std::uint8_t> moved = {}) const;
-  void find_edge_triangle(std::vector<EdgeTriangle>& pairs, std::span<const std::uint8_t> moved = {}) const;
+  void find_edge_triangle(std::vector<EdgeTriangle>& pairs,
+                          std::span<const std::uint8_t> moved = {}) const;
 
   const CollisionSurface& surface() const { return *surface_; }
 

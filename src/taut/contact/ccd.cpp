@@ -17,14 +17,18 @@ using Corners = const Vec3* [4];
 
 Vec3 mean(const Vec3& start, const Vec3& end, double t) { return (1.0 - t) * start + t * end; }
 
-// What the walk needs of a pair: its closest points at a time, and a normal worth a try when theirs fails for rounding.
+// What the walk needs of a pair: its closest points at a time, and a normal worth a try when theirs
+// fails for rounding.
 struct MovingPointTriangle {
   Vec3 ap[2], ab[2], ac[2];
 
   MovingPointTriangle(const Corners& x0, const Corners& x1)
-      : ap{*x0[0] - *x0[1], *x1[0] - *x1[1]}, ab{*x0[2] - *x0[1], *x1[2] - *x1[1]}, ac{*x0[3] - *x0[1], *x1[3] - *x1[1]} {}
+      : ap{*x0[0] - *x0[1], *x1[0] - *x1[1]},
+        ab{*x0[2] - *x0[1], *x1[2] - *x1[1]},
+        ac{*x0[3] - *x0[1], *x1[3] - *x1[1]} {}
   PointTriangleProximity closest(double t) const {
-    return closest_point_triangle(mean(ap[0], ap[1], t), mean(ab[0], ab[1], t), mean(ac[0], ac[1], t));
+    return closest_point_triangle(mean(ap[0], ap[1], t), mean(ab[0], ab[1], t),
+                                  mean(ac[0], ac[1], t));
   }
   Vec3 cross(double t) const { return mean(ab[0], ab[1], t).cross(mean(ac[0], ac[1], t)); }
 };
@@ -33,7 +37,9 @@ struct MovingEdges {
   Vec3 ca[2], ab[2], cd[2];
 
   MovingEdges(const Corners& x0, const Corners& x1)
-      : ca{*x0[0] - *x0[2], *x1[0] - *x1[2]}, ab{*x0[1] - *x0[0], *x1[1] - *x1[0]}, cd{*x0[3] - *x0[2], *x1[3] - *x1[2]} {}
+      : ca{*x0[0] - *x0[2], *x1[0] - *x1[2]},
+        ab{*x0[1] - *x0[0], *x1[1] - *x1[0]},
+        cd{*x0[3] - *x0[2], *x1[3] - *x1[2]} {}
   EdgeEdgeProximity closest(double t) const {
     return closest_edge_edge(mean(ca[0], ca[1], t), mean(ab[0], ab[1], t), mean(cd[0], cd[1], t));
   }
@@ -52,7 +58,8 @@ Impact walk(const SeparatingPlanes& planes, const Pair& pair, const CcdOptions& 
     if (!(next > reached)) {
       // Rounding has spoilt the normal: that of the face, or of both edges, may still do.
       const Vec3 normal = pair.cross(reached).normalized();
-      next = std::max(planes.separated_until(normal, reached, separation), planes.separated_until(-normal, reached, separation));
+      next = std::max(planes.separated_until(normal, reached, separation),
+                      planes.separated_until(-normal, reached, separation));
     }
     if (!(next > reached)) return {true, reached};
     if (next >= 1.0) return {};
@@ -71,14 +78,18 @@ Impact impact_of(const Corners& x0, const Corners& x1, const CcdOptions& options
 
 }  // namespace
 
-Impact vertex_triangle_impact(const Vec3& p0, const Vec3& a0, const Vec3& b0, const Vec3& c0, const Vec3& p1, const Vec3& a1,
-                              const Vec3& b1, const Vec3& c1, const CcdOptions& options) {
-  return impact_of<SeparatingPlanes::VertexTriangle, MovingPointTriangle>({&p0, &a0, &b0, &c0}, {&p1, &a1, &b1, &c1}, options);
+Impact vertex_triangle_impact(const Vec3& p0, const Vec3& a0, const Vec3& b0, const Vec3& c0,
+                              const Vec3& p1, const Vec3& a1, const Vec3& b1, const Vec3& c1,
+                              const CcdOptions& options) {
+  return impact_of<SeparatingPlanes::VertexTriangle, MovingPointTriangle>(
+      {&p0, &a0, &b0, &c0}, {&p1, &a1, &b1, &c1}, options);
 }
 
-Impact edge_edge_impact(const Vec3& a0, const Vec3& b0, const Vec3& c0, const Vec3& d0, const Vec3& a1, const Vec3& b1, const Vec3& c1,
-                        const Vec3& d1, const CcdOptions& options) {
-  return impact_of<SeparatingPlanes::EdgeEdge, MovingEdges>({&a0, &b0, &c0, &d0}, {&a1, &b1, &c1, &d1}, options);
+Impact edge_edge_impact(const Vec3& a0, const Vec3& b0, const Vec3& c0, const Vec3& d0,
+                        const Vec3& a1, const Vec3& b1, const Vec3& c1, const Vec3& d1,
+                        const CcdOptions& options) {
+  return impact_of<SeparatingPlanes::EdgeEdge, MovingEdges>({&a0, &b0, &c0, &d0},
+                                                            {&a1, &b1, &c1, &d1}, options);
 }
 
 namespace {
@@ -87,14 +98,16 @@ constexpr Index impact_chunk = 512;
 
 // Hits of each chunk go to a list of its own; lists are joined in order. corners_of(k): of pair k.
 template <class CornersOf>
-void collect_hits(Index pairs, bool edges, std::span<const Vec3> x0, std::span<const Vec3> x1, const CcdOptions& options,
-                  const CornersOf& corners_of, std::vector<PairImpact>& hits) {
+void collect_hits(Index pairs, bool edges, std::span<const Vec3> x0, std::span<const Vec3> x1,
+                  const CcdOptions& options, const CornersOf& corners_of,
+                  std::vector<PairImpact>& hits) {
   const auto decide = edges ? edge_edge_impact : vertex_triangle_impact;
   const auto find = [&](Index begin, Index end, std::vector<PairImpact>& found) {
     std::array<detail::PairCorners, impact_chunk> corners{};
     std::array<std::uint8_t, impact_chunk> clear;
     for (Index k = begin; k < end; ++k) corners[k - begin] = corners_of(k);
-    detail::find_clear(corners.data(), end - begin, edges, x0.data(), x1.data(), options.minimum_separation, clear.data());
+    detail::find_clear(corners.data(), end - begin, edges, x0.data(), x1.data(),
+                       options.minimum_separation, clear.data());
     for (Index k = begin; k < end; ++k) {
       if (clear[k - begin] & detail::clear_throughout) continue;
       const auto [i, j, l, m] = corners[k - begin];
@@ -108,8 +121,9 @@ void collect_hits(Index pairs, bool edges, std::span<const Vec3> x0, std::span<c
 
 }  // namespace
 
-void find_impacts(const CollisionSurface& surface, std::span<const Vec3> x0, std::span<const Vec3> x1,
-                  std::span<const VertexTriangle> pairs, const CcdOptions& options, std::vector<PairImpact>& hits) {
+void find_impacts(const CollisionSurface& surface, std::span<const Vec3> x0,
+                  std::span<const Vec3> x1, std::span<const VertexTriangle> pairs,
+                  const CcdOptions& options, std::vector<PairImpact>& hits) {
   const auto corners_of = [&](Index k) {
     const Triangle& t = surface.triangles[pairs[k].triangle];
     return detail::PairCorners{pairs[k].vertex, t[0], t[1], t[2]};
@@ -117,7 +131,8 @@ void find_impacts(const CollisionSurface& surface, std::span<const Vec3> x0, std
   collect_hits(static_cast<Index>(pairs.size()), false, x0, x1, options, corners_of, hits);
 }
 
-void find_impacts(const CollisionSurface& surface, std::span<const Vec3> x0, std::span<const Vec3> x1, std::span<const EdgeEdge> pairs,
+void find_impacts(const CollisionSurface& surface, std::span<const Vec3> x0,
+                  std::span<const Vec3> x1, std::span<const EdgeEdge> pairs,
                   const CcdOptions& options, std::vector<PairImpact>& hits) {
   const auto corners_of = [&](Index k) {
     const auto [a, b] = surface.edges[pairs[k].first];
@@ -127,10 +142,12 @@ void find_impacts(const CollisionSurface& surface, std::span<const Vec3> x0, std
   collect_hits(static_cast<Index>(pairs.size()), true, x0, x1, options, corners_of, hits);
 }
 
-void find_impacts(std::span<const std::array<Index, 4>> pairs, bool edges, std::span<const Vec3> x0, std::span<const Vec3> x1,
-                  const CcdOptions& options, std::vector<PairImpact>& hits) {
+void find_impacts(std::span<const std::array<Index, 4>> pairs, bool edges, std::span<const Vec3> x0,
+                  std::span<const Vec3> x1, const CcdOptions& options,
+                  std::vector<PairImpact>& hits) {
   collect_hits(
-      static_cast<Index>(pairs.size()), edges, x0, x1, options, [&](Index k) { return pairs[k]; }, hits);
+      static_cast<Index>(pairs.size()), edges, x0, x1, options, [&](Index k) { return pairs[k]; },
+      hits);
 }
 
 }  // namespace taut

@@ -19,12 +19,15 @@ namespace {
 
 constexpr double separation_share = 1e-2;  // of the thickness: what is surely kept
 constexpr double gap_share = 0.5;          // of the thickness: where colliding pairs should end
-constexpr double parting_share = 0.2;      // of the thickness: how much further apart than at the start they need to end
-constexpr double tolerance_share = 1e-3;   // of the thickness: rows this well met are met
+// of the thickness: how much further apart than at the start they need to end
+constexpr double parting_share = 0.2;
+constexpr double tolerance_share = 1e-3;  // of the thickness: rows this well met are met
 constexpr int repulsion_iterations = 8, impulse_iterations = 6;
-constexpr int full_sweeps = 4;  // from then on colliding pairs need to end only half as far apart, and again
+// from then on colliding pairs need to end only half as far apart, and again
+constexpr int full_sweeps = 4;
 constexpr int most_zone_rounds = 1000;
-constexpr double fit_share = 0.1;  // of the thickness: how well a zone has to fit what it is attached to
+// of the thickness: how well a zone has to fit what it is attached to
+constexpr double fit_share = 0.1;
 constexpr Index node_grain = 2048;
 
 struct Trouble {
@@ -47,8 +50,15 @@ struct ClothContact::Work {
 
   std::span<const double> mass;
 
-  Work(const ClothContactStep& the_step, std::span<Vec3> end, std::span<const double> masses, std::vector<ContactRow>& the_rows)
-      : step(the_step), x1(end), zones(masses, the_step.held), rows(the_rows), moved(end.size()), awake(end.size(), 1), mass(masses) {}
+  Work(const ClothContactStep& the_step, std::span<Vec3> end, std::span<const double> masses,
+       std::vector<ContactRow>& the_rows)
+      : step(the_step),
+        x1(end),
+        zones(masses, the_step.held),
+        rows(the_rows),
+        moved(end.size()),
+        awake(end.size(), 1),
+        mass(masses) {}
 
   void meet_rows(int iterations, double tolerance) {
     satisfy_rows(rows, *slabs, x1, awake, moved, iterations, tolerance);
@@ -61,8 +71,9 @@ struct ClothContact::Work {
   void forget_moved() { std::ranges::fill(moved, std::uint8_t{0}); }
 };
 
-ClothContact::ClothContact(CollisionSurface surface, std::vector<CollisionBody> bodies, std::span<const Vec3> start,
-                           std::vector<double> mass, ContactOptions options)
+ClothContact::ClothContact(CollisionSurface surface, std::vector<CollisionBody> bodies,
+                           std::span<const Vec3> start, std::vector<double> mass,
+                           ContactOptions options)
     : surface_(std::make_unique<CollisionSurface>(std::move(surface))),
       bodies_(std::move(bodies)),
       mass_(std::move(mass)),
@@ -99,7 +110,8 @@ Status ClothContact::resolve(const ClothContactStep& step, std::span<Vec3> x1) {
 void ClothContact::repel(Work& work) {
   Timer timer;
   const std::vector<NearPair> near =
-      search_.near(work.step.x0, work.x1, laws_.largest_thickness(), [&](const CollisionPair& pair) { return thickness_of(pair); });
+      search_.near(work.step.x0, work.x1, laws_.largest_thickness(),
+                   [&](const CollisionPair& pair) { return thickness_of(pair); });
   counts_.near = static_cast<int>(near.size());
   const std::vector<ContactRow> touched = touched_rows(work);
   std::vector<RowSlabs::Vertices> vertices;
@@ -112,7 +124,9 @@ void ClothContact::repel(Work& work) {
   parallel_for(static_cast<Index>(vertices.size()), node_grain, [&](Index begin, Index end) {
     for (Index k = begin; k < end; ++k) {
       ContactRow& row = work.rows[work.slabs->place(k)];
-      row = k < std::ssize(near) ? repulsion_row(near[k], thickness_of(near[k].pair), friction_of(near[k].pair)) : touched[k - near.size()];
+      row = k < std::ssize(near)
+                ? repulsion_row(near[k], thickness_of(near[k].pair), friction_of(near[k].pair))
+                : touched[k - near.size()];
       weigh(row, work.step.inverse_mass, work.step.x0);
       if (k < std::ssize(near)) begin_with(row, forces.of(row.node), work.step.h);
     }
@@ -123,8 +137,8 @@ void ClothContact::repel(Work& work) {
   counts_.impulse_ms += timer.lap();
 }
 
-// Nodes that touch analytic solids. Where the solve has put them they are well placed, even if a little inside (solid_contact.h): pushes
-// must not take them further in.
+// Nodes that touch analytic solids. Where the solve has put them they are well placed, even if a
+// little inside (solid_contact.h): pushes must not take them further in.
 std::vector<ContactRow> ClothContact::touched_rows(const Work& work) const {
   std::vector<ContactRow> rows;
   if (!work.step.solids) return rows;
@@ -136,9 +150,12 @@ std::vector<ContactRow> ClothContact::touched_rows(const Work& work) const {
   return rows;
 }
 
-// Collisions of the pairs with a node in `moved` (all, where it is empty), and those nodes' obstacles.
+// Collisions of the pairs with a node in `moved` (all, where it is empty), and those nodes'
+// obstacles.
 void ClothContact::find_trouble(Work& work, std::span<const std::uint8_t> moved) {
-  const auto skip = [&](const CollisionPair& pair) { return ignored(pair) || work.zones.together(pair.node); };
+  const auto skip = [&](const CollisionPair& pair) {
+    return ignored(pair) || work.zones.together(pair.node);
+  };
   work.trouble.pairs = search_.colliding(work.step.x0, work.x1, separation_, moved, skip);
   work.trouble.obstacles.clear();
   if (!work.step.solids || work.step.solids->solids().empty()) return;
@@ -146,7 +163,8 @@ void ClothContact::find_trouble(Work& work, std::span<const std::uint8_t> moved)
   std::vector<std::uint8_t> blocked(static_cast<std::size_t>(nodes), 0);
   parallel_for(nodes, node_grain, [&](Index begin, Index end) {
     for (Index i = begin; i < end; ++i)
-      blocked[i] = !work.step.held[i] && (moved.empty() || moved[i]) && work.step.solids->obstacle(i, work.x1[i]);
+      blocked[i] = !work.step.held[i] && (moved.empty() || moved[i]) &&
+                   work.step.solids->obstacle(i, work.x1[i]);
   });
   for (Index i = 0; i < nodes; ++i) {
     if (!blocked[i]) continue;
@@ -168,7 +186,8 @@ bool ClothContact::sweep(Work& work, int round) {
   double share = gap_share;
   for (int k = full_sweeps; k <= round; ++k) share = std::max(0.5 * share, 3.0 * separation_share);
   for (const CollidingPair& hit : work.trouble.pairs) {
-    const double thickness = thickness_of(hit.pair), start = closest(hit.pair, work.step.x0).distance;
+    const double thickness = thickness_of(hit.pair),
+                 start = closest(hit.pair, work.step.x0).distance;
     const double gap = std::min(share * thickness, start + parting_share * thickness);
     work.rows.push_back(impact_row(hit, work.step.x0, work.x1, gap, friction_of(hit.pair)));
     weigh(work.rows.back(), work.step.inverse_mass, work.step.x0);
@@ -180,7 +199,8 @@ bool ClothContact::sweep(Work& work, int round) {
   // What could not be moved still collides, and must be found again.
   for (const CollidingPair& hit : work.trouble.pairs)
     for (const Index node : hit.pair.node) work.moved[node] = work.awake[node] = 1;
-  for (const auto& [node, obstacle] : work.trouble.obstacles) work.moved[node] = work.awake[node] = 1;
+  for (const auto& [node, obstacle] : work.trouble.obstacles)
+    work.moved[node] = work.awake[node] = 1;
   work.meet_rows(impulse_iterations, tolerance_share * options_.thickness);
   counts_.impulse_ms += timer.lap();
   return false;
@@ -193,7 +213,8 @@ Status ClothContact::hold(Work& work) {
   while (!work.trouble.none() && status.ok()) {
     ++counts_.zone_rounds;
     bool grown = false;
-    for (const CollidingPair& hit : work.trouble.pairs) grown |= work.zones.join(hit.pair.node, work.step.x0, work.x1);
+    for (const CollidingPair& hit : work.trouble.pairs)
+      grown |= work.zones.join(hit.pair.node, work.step.x0, work.x1);
     for (const auto& [node, obstacle] : work.trouble.obstacles)
       grown |= work.zones.attach(node, obstacle.solid, work.step.x0[node], obstacle.carried);
     if (!grown || counts_.zone_rounds > most_zone_rounds) {
@@ -216,9 +237,12 @@ void ClothContact::note_touched(const Work& work) {
   for (const ContactRow& row : work.rows) {
     if (!(row.lambda > 0.0)) continue;
     const bool plane = row.node[1] < 0;
-    const bool solid = plane || std::ranges::any_of(row.node, [&](Index node) { return surface_->is_solid[node] != 0; });
+    const bool solid = plane || std::ranges::any_of(row.node, [&](Index node) {
+                         return surface_->is_solid[node] != 0;
+                       });
     for (std::size_t k = 0; k < row.node.size(); ++k)
-      if (row.node[k] >= 0 && row.weight[k] != 0.0) touched_[row.node[k]] |= solid ? touched_solid : touched_cloth;
+      if (row.node[k] >= 0 && row.weight[k] != 0.0)
+        touched_[row.node[k]] |= solid ? touched_solid : touched_cloth;
   }
 }
 
@@ -226,7 +250,8 @@ void ClothContact::note(const Work& work) {
   note_touched(work);
   counts_.tested = search_.tested();
   forces_ = forces_of(work.rows, work.step.h, surface_->vertices);
-  counts_.pushing = static_cast<int>(std::ranges::count_if(work.rows, [](const ContactRow& row) { return row.lambda > 0.0; }));
+  counts_.pushing = static_cast<int>(
+      std::ranges::count_if(work.rows, [](const ContactRow& row) { return row.lambda > 0.0; }));
   counts_.zones = static_cast<int>(work.zones.zones().size());
   counts_.zone_nodes = work.zones.node_count();
   counts_.inexact = work.zones.inexact();
@@ -246,18 +271,21 @@ std::string ClothContact::place(Index vertex, const Vec3& x) const {
   const CollisionBody& body = bodies_[surface_->body[vertex]];
   Index first = vertex;
   while (first > 0 && surface_->body[first - 1] == surface_->body[vertex]) --first;
-  return fmt::format("{} '{}' {} {} at ({:.4f}, {:.4f}, {:.4f})", body.is_solid ? "solid" : "cloth", body.name,
-                     body.is_solid ? "vertex" : "node", vertex - first, x.x(), x.y(), x.z());
+  return fmt::format("{} '{}' {} {} at ({:.4f}, {:.4f}, {:.4f})", body.is_solid ? "solid" : "cloth",
+                     body.name, body.is_solid ? "vertex" : "node", vertex - first, x.x(), x.y(),
+                     x.z());
 }
 
-Status ClothContact::unresolved(const Work& work, std::span<const Index> nodes, const std::string& why) {
+Status ClothContact::unresolved(const Work& work, std::span<const Index> nodes,
+                                const std::string& why) {
   trouble_.assign(nodes.begin(), nodes.end());
   std::vector<std::string> places;
   for (const Index node : nodes) places.push_back(place(node, work.step.x0[node]));
   return {Outcome::breakdown, fmt::format("contact: {} {}", fmt::join(places, ", "), why)};
 }
 
-// Nothing is left to merge or attach, and still there is a collision: with what holds its zone, or between held nodes.
+// Nothing is left to merge or attach, and still there is a collision: with what holds its zone, or
+// between held nodes.
 Status ClothContact::stuck(const Work& work) {
   std::vector<Index> nodes;
   if (!work.trouble.pairs.empty()) {
@@ -267,7 +295,8 @@ Status ClothContact::stuck(const Work& work) {
     nodes.push_back(work.trouble.obstacles.front().first);
   }
   for (const Index node : nodes)
-    if (const RigidZone* zone = work.zones.zone_of(node); zone && !zone->attachments.empty()) return contradiction(work, *zone);
+    if (const RigidZone* zone = work.zones.zone_of(node); zone && !zone->attachments.empty())
+      return contradiction(work, *zone);
   return unresolved(work, nodes, "cannot be kept apart");
 }
 
@@ -278,13 +307,15 @@ Status ClothContact::contradiction(const Work& work, const RigidZone& zone) {
       holders.insert("solid '" + work.step.solids->solids()[-1 - attachment.holder].name + "'");
     } else {
       const CollisionBody& body = bodies_[surface_->body[attachment.holder]];
-      holders.insert(body.is_solid ? "solid '" + body.name + "'" : "pins of cloth '" + body.name + "'");
+      holders.insert(body.is_solid ? "solid '" + body.name + "'"
+                                   : "pins of cloth '" + body.name + "'");
     }
   }
   const std::size_t shown = std::min<std::size_t>(zone.nodes.size(), 4);
-  Status status = unresolved(work, std::span(zone.nodes).first(shown),
-                             fmt::format("and {} more nodes are pinched between {}, which do not move alike", zone.nodes.size() - shown,
-                                         fmt::join(holders, " and ")));
+  Status status =
+      unresolved(work, std::span(zone.nodes).first(shown),
+                 fmt::format("and {} more nodes are pinched between {}, which do not move alike",
+                             zone.nodes.size() - shown, fmt::join(holders, " and ")));
   trouble_ = zone.nodes;
   return status;
 }

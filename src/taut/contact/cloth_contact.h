@@ -1,23 +1,29 @@
 #pragma once
-// What keeps cloth from passing through itself, other cloths and solids' meshes: corrects the positions at the end of a step so that no
-// pair of the surface meets on the way, or says that it cannot (docs/mathematics.md, 7; Bridson, Fedkiw & Anderson 2002; paper Section 7).
+// What keeps cloth from passing through itself, other cloths and solids' meshes: corrects the
+// positions at the end of a step so that no pair of the surface meets on the way, or says that it
+// cannot (docs/mathematics.md, 7; Bridson, Fedkiw & Anderson 2002; paper Section 7).
 //
 //   x0            m, positions at the start, without intersections
 //   x1            m, where the dynamics would end; changed in place
 //   thickness     m: how far apart layers keep when they can
-//   separation    m: how far apart they surely stay: continuous detection reports whatever comes nearer
+//   separation    m: how far apart they surely stay: continuous detection reports whatever comes
+//                 nearer
 //
-//   1  repulsion  pairs nearer than their thickness at x0 must not come nearer, and go a fifth of what is missing apart (repulsion.h);
-//                 they begin with what pushed them in the step before (pair_forces.h)
-//   2  impulses   pairs that collide on the way end apart on the side where they were, with Coulomb friction (impulses.h); repeated for the
-//                 pairs of moved nodes until none collides, at most `sweeps` times. Nodes stay out of analytic solids likewise
-//   3  zones      what still collides moves as rigid bodies, merged as they grow, until nothing collides (rigid_zones.h)
+//   1  repulsion  pairs nearer than their thickness at x0 must not come nearer, and go a fifth of
+//                 what is missing apart (repulsion.h); they begin with what pushed them in the step
+//                 before (pair_forces.h)
+//   2  impulses   pairs that collide on the way end apart on the side where they were, with Coulomb
+//                 friction (impulses.h); repeated for the pairs of moved nodes until none collides,
+//                 at most `sweeps` times. Nodes stay out of analytic solids likewise
+//   3  zones      what still collides moves as rigid bodies, merged as they grow, until nothing
+//                 collides (rigid_zones.h)
 //
-// A pair is searched again whenever one of its nodes has moved, so that at the end every pair has been proved free on its final way, or
-// lies in one zone, inside which nothing can meet.
+// A pair is searched again whenever one of its nodes has moved, so that at the end every pair has
+// been proved free on its final way, or lies in one zone, inside which nothing can meet.
 //
-// The average velocities (x1 - x0)/h keep their linear and angular momentum (angular_momentum.h), but for what pins and solids take and for
-// zones counted as inexact. Deterministic: the same bits for any number of threads. One step at a time.
+// The average velocities (x1 - x0)/h keep their linear and angular momentum (angular_momentum.h),
+// but for what pins and solids take and for zones counted as inexact. Deterministic: the same bits
+// for any number of threads. One step at a time.
 
 #include <memory>
 #include <string>
@@ -38,9 +44,10 @@ struct ClothContactStep {
   std::span<const Vec3> lever;           // m: y of contact/angular_momentum.h
   std::span<const double> inverse_mass;  // 1/kg, 0 for what is held
   std::span<const std::uint8_t> held;    // not 0: ends where x1 says
-  const SolidContact* solids = nullptr;  // analytic ones, begun for this step; its nodes are the first vertices
-  double h = 1.0;                        // s: the unit of forces; any will do without them
-  std::span<const PairForce> forces;     // of the step before, from forces(); empty: none known
+  // analytic ones, begun for this step; its nodes are the first vertices
+  const SolidContact* solids = nullptr;
+  double h = 1.0;                     // s: the unit of forces; any will do without them
+  std::span<const PairForce> forces;  // of the step before, from forces(); empty: none known
 };
 
 struct ClothContactCounts {
@@ -58,7 +65,8 @@ struct ClothContactCounts {
 // Nodes of zones, for the next solve: they go on with their velocity and are eliminated. Ascending.
 struct ZoneState {
   std::vector<Index> node;
-  std::vector<std::uint8_t> rides;  // 1: with something held or a solid, so that gravity does not move it
+  // 1: with something held or a solid, so that gravity does not move it
+  std::vector<std::uint8_t> rides;
   bool operator==(const ZoneState&) const = default;
 };
 
@@ -73,11 +81,13 @@ inline constexpr std::uint8_t touched_solid = 1, touched_cloth = 2;
 
 class ClothContact {
  public:
-  // start: m, one a vertex, any shape. mass: kg, one a vertex; of solids' vertices ignored. thickness > 0: resolved, see default_thickness.
-  ClothContact(CollisionSurface surface, std::vector<CollisionBody> bodies, std::span<const Vec3> start, std::vector<double> mass,
-               ContactOptions options);
+  // start: m, one a vertex, any shape. mass: kg, one a vertex; of solids' vertices ignored.
+  // thickness > 0: resolved, see default_thickness.
+  ClothContact(CollisionSurface surface, std::vector<CollisionBody> bodies,
+               std::span<const Vec3> start, std::vector<double> mass, ContactOptions options);
 
-  // On failure x1 is not to be used, and the message says which nodes, cloths and solids cannot be kept apart.
+  // On failure x1 is not to be used, and the message says which nodes, cloths and solids cannot be
+  // kept apart.
   Status resolve(const ClothContactStep& step, std::span<Vec3> x1);
 
   const CollisionSurface& surface() const { return *surface_; }
@@ -89,7 +99,8 @@ class ClothContact {
   const ZoneState& zone_state() const { return zones_; }
   // Of the last resolve: what pushed the pairs, ascending by their first vertex.
   const std::vector<PairForce>& forces() const { return forces_; }
-  // Of the last resolve, one a vertex: who pushed it at the end, cloth (touched_cloth) or a solid (touched_solid).
+  // Of the last resolve, one a vertex: who pushed it at the end, cloth (touched_cloth) or a solid
+  // (touched_solid).
   std::span<const std::uint8_t> touched() const { return touched_; }
   // After a failure: the nodes that the message is about.
   const std::vector<Index>& trouble() const { return trouble_; }
@@ -99,7 +110,9 @@ class ClothContact {
   struct Work;
   bool ignored(const CollisionPair& pair) const { return !options_.self && !meets_solid(pair); }
   const PairLaw& law_of(const CollisionPair& pair) const;
-  double thickness_of(const CollisionPair& pair) const { return ignored(pair) ? 0.0 : law_of(pair).thickness; }
+  double thickness_of(const CollisionPair& pair) const {
+    return ignored(pair) ? 0.0 : law_of(pair).thickness;
+  }
   double friction_of(const CollisionPair& pair) const { return law_of(pair).friction; }
   bool meets_solid(const CollisionPair& pair) const;
   void repel(Work& work);
@@ -129,7 +142,8 @@ class ClothContact {
   std::vector<Index> trouble_;
 };
 
-// A tenth of the mean edge, at most 1 mm: less than what folding cloth can give way, more than rounding. m.
+// A tenth of the mean edge, at most 1 mm: less than what folding cloth can give way, more than
+// rounding. m.
 double default_thickness(const CollisionSurface& surface, std::span<const Vec3> rest);
 
 }  // namespace taut

@@ -32,10 +32,12 @@ PairProximity closest(const CollisionPair& pair, std::span<const Vec3> x) {
   return result;
 }
 
-Impact impact(const CollisionPair& pair, std::span<const Vec3> x0, std::span<const Vec3> x1, const CcdOptions& options) {
+Impact impact(const CollisionPair& pair, std::span<const Vec3> x0, std::span<const Vec3> x1,
+              const CcdOptions& options) {
   const auto& n = pair.node;
   const auto decide = pair.edges ? edge_edge_impact : vertex_triangle_impact;
-  return decide(x0[n[0]], x0[n[1]], x0[n[2]], x0[n[3]], x1[n[0]], x1[n[1]], x1[n[2]], x1[n[3]], options);
+  return decide(x0[n[0]], x0[n[1]], x0[n[2]], x0[n[3]], x1[n[0]], x1[n[1]], x1[n[2]], x1[n[3]],
+                options);
 }
 
 }  // namespace taut

@@ -22,10 +22,12 @@ struct PairProximity {
   std::array<double, 4> weight{};
   Vec3 normal = Vec3::UnitZ();  // from the second to the first
   double distance = 0.0;        // m
-  bool inside = true;           // inside both edges: not at an end, where a vertex is already compared with a triangle
+  // inside both edges: not at an end, where a vertex is already compared with a triangle
+  bool inside = true;
 };
 PairProximity closest(const CollisionPair& pair, std::span<const Vec3> x);
 
-Impact impact(const CollisionPair& pair, std::span<const Vec3> x0, std::span<const Vec3> x1, const CcdOptions& options);
+Impact impact(const CollisionPair& pair, std::span<const Vec3> x0, std::span<const Vec3> x1,
+              const CcdOptions& options);
 
 }  // namespace taut

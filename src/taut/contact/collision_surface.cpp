@@ -24,7 +24,8 @@ CollisionSurface join_surfaces(std::span<const SurfacePart> parts) {
   for (const SurfacePart& part : parts) {
     for (const Triangle& t : part.triangles) {
       for ([[maybe_unused]] const Index v : t) assert(v >= 0 && v < part.vertices);
-      surface.triangles.push_back({t[0] + surface.vertices, t[1] + surface.vertices, t[2] + surface.vertices});
+      surface.triangles.push_back(
+          {t[0] + surface.vertices, t[1] + surface.vertices, t[2] + surface.vertices});
     }
     surface.vertices += part.vertices;
     surface.body.resize(static_cast<std::size_t>(surface.vertices), body++);

@@ -4,8 +4,10 @@
 //   vertices    how many; positions are passed beside the surface, one Vec3 (m) a vertex
 //   triangles   three vertices each
 //   edges       two vertices a < b each, unique, sorted by (a, b)
-//   body        per vertex: which part (cloth or solid) it belongs to, from 0 in the order in which they were joined
-//   is_solid    per vertex: 1 where it belongs to a solid, else 0. Pairs solid-solid are nobody's business here
+//   body        per vertex: which part (cloth or solid) it belongs to, from 0 in the order in which
+//               they were joined
+//   is_solid    per vertex: 1 where it belongs to a solid, else 0. Pairs solid-solid are nobody's
+//               business here
 //
 // Triangles of a part keep their order and follow those of the parts before; so do vertices.
 

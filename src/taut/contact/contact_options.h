@@ -6,17 +6,19 @@
 
 namespace taut {
 
-// Two bodies that have another thickness or friction with each other than they have otherwise, by name: a cloth, and a cloth (itself, too)
-// or a solid.
+// Two bodies that have another thickness or friction with each other than they have otherwise, by
+// name: a cloth, and a cloth (itself, too) or a solid.
 struct ContactPair {
   std::string cloth, with;
-  double thickness = -1.0;  // m, between the middles of two layers, or from the solid's surface; negative: as otherwise
-  double friction = -1.0;   // Coulomb's mu; negative: as otherwise
+  // m, between the middles of two layers, or from the solid's surface; negative: as otherwise
+  double thickness = -1.0;
+  double friction = -1.0;  // Coulomb's mu; negative: as otherwise
   bool operator==(const ContactPair&) const = default;
 };
 
 struct ContactOptions {
-  // Solves per step, at most, until the set of contacts and their stick or slide no longer changes. What still penetrates then is moved out.
+  // Solves per step, at most, until the set of contacts and their stick or slide no longer changes.
+  // What still penetrates then is moved out.
   int max_passes = 8;
   // A node this close (m) to a solid's (thickened) surface touches it.
   double touch_tolerance = 1e-6;
@@ -28,7 +30,8 @@ struct ContactOptions {
   int sweeps = 8;          // rounds of impulses before what is left is held as rigid zones
   int check_every = 1;     // steps from one exact check for intersections to the next; 0: none
   bool allow_intersections = false;  // start although there are intersections
-  bool untangle = false;             // draw cloth that intersects at the start apart (contact/untangle.h)
+  // draw cloth that intersects at the start apart (contact/untangle.h)
+  bool untangle = false;
   std::vector<ContactPair> pairs{};  // no two of the same bodies
   bool operator==(const ContactOptions&) const = default;
 };

@@ -45,7 +45,8 @@ auto with_nodes(ContactRow& row, std::span<const Vec3> x1, const Function& f) {
   return row.node[1] < 0 ? f(RowNodes<1>(row, x1)) : f(RowNodes<4>(row, x1));
 }
 
-// What friction adds to bring the tangential motion to that of the other side, within Coulomb's cone.
+// What friction adds to bring the tangential motion to that of the other side, within Coulomb's
+// cone.
 Vec3 friction_step(const ContactRow& row, const Vec3& r, double mass) {
   const Vec3 motion = r - row.start - row.carried;
   const Vec3 slip = motion - row.normal.dot(motion) * row.normal;
@@ -59,7 +60,8 @@ Vec3 friction_step(const ContactRow& row, const Vec3& r, double mass) {
 template <class Nodes>
 double satisfy(Nodes nodes, std::span<Vec3> x1, std::span<std::uint8_t> moved, double tolerance) {
   ContactRow& row = nodes.row;
-  const double missing = row.target - row.normal.dot(nodes.separation()), mass = 1.0 / row.inverse_mass;
+  const double missing = row.target - row.normal.dot(nodes.separation()),
+               mass = 1.0 / row.inverse_mass;
   const double lambda = std::max(0.0, row.lambda + missing * mass);
   if (lambda == 0.0 && row.lambda == 0.0) return 0.0;
   double motion = std::abs(lambda - row.lambda) * row.inverse_mass;
@@ -90,16 +92,18 @@ bool is_awake(const ContactRow& row, std::span<const std::uint8_t> awake) {
 
 void wake(const ContactRow& row, std::span<std::uint8_t> awake) {
   for (std::size_t k = 0; k < 4 && row.node[k] >= 0; ++k)
-    if (!awake[row.node[k]]) awake[row.node[k]] = 1;  // not written needlessly: threads share the line
+    // not written needlessly: threads share the line
+    if (!awake[row.node[k]]) awake[row.node[k]] = 1;
 }
 
 // In this order. Returns the largest motion of any.
-double satisfy_group(std::span<ContactRow> group, std::span<Vec3> x1, std::span<std::uint8_t> awake, std::span<std::uint8_t> moved,
-                     double tolerance) {
+double satisfy_group(std::span<ContactRow> group, std::span<Vec3> x1, std::span<std::uint8_t> awake,
+                     std::span<std::uint8_t> moved, double tolerance) {
   double largest = 0.0;
   for (ContactRow& row : group) {
     if (row.inverse_mass == 0.0 || !is_awake(row, awake)) continue;
-    const double motion = with_nodes(row, x1, [&](const auto& nodes) { return satisfy(nodes, x1, moved, tolerance); });
+    const double motion = with_nodes(
+        row, x1, [&](const auto& nodes) { return satisfy(nodes, x1, moved, tolerance); });
     if (motion > 0.0) wake(row, awake);
     largest = std::max(largest, motion);
   }
@@ -125,14 +129,16 @@ void weigh(ContactRow& row, std::span<const double> inverse_mass, std::span<cons
 
 namespace {
 
-// The groups of the rows, phase after phase: f(g, rows) with all groups of a phase at the same time.
+// The groups of the rows, phase after phase: f(g, rows) with all groups of a phase at the same
+// time.
 template <class Function>
 void for_groups(std::span<ContactRow> rows, const RowSlabs& slabs, const Function& f) {
   for (Index phase = 0; phase < RowSlabs::phases; ++phase) {
     const Index first = slabs.first_group(phase);
     parallel_for(slabs.first_group(phase + 1) - first, 1, [&](Index begin, Index end) {
       for (Index g = first + begin; g < first + end; ++g) {
-        const Index stop = g + 1 == RowSlabs::groups ? static_cast<Index>(rows.size()) : slabs.start(g + 1);
+        const Index stop =
+            g + 1 == RowSlabs::groups ? static_cast<Index>(rows.size()) : slabs.start(g + 1);
         f(g, rows.subspan(slabs.start(g), stop - slabs.start(g)));
       }
     });
@@ -141,7 +147,8 @@ void for_groups(std::span<ContactRow> rows, const RowSlabs& slabs, const Functio
 
 }  // namespace
 
-void apply_impulses(std::span<ContactRow> rows, const RowSlabs& slabs, std::span<Vec3> x1, std::span<std::uint8_t> moved) {
+void apply_impulses(std::span<ContactRow> rows, const RowSlabs& slabs, std::span<Vec3> x1,
+                    std::span<std::uint8_t> moved) {
   for_groups(rows, slabs, [&](Index, std::span<ContactRow> group) {
     for (ContactRow& row : group) {
       if (row.lambda == 0.0) continue;
@@ -153,11 +160,14 @@ void apply_impulses(std::span<ContactRow> rows, const RowSlabs& slabs, std::span
   });
 }
 
-void satisfy_rows(std::span<ContactRow> rows, const RowSlabs& slabs, std::span<Vec3> x1, std::span<std::uint8_t> awake,
-                  std::span<std::uint8_t> moved, int iterations, double tolerance) {
+void satisfy_rows(std::span<ContactRow> rows, const RowSlabs& slabs, std::span<Vec3> x1,
+                  std::span<std::uint8_t> awake, std::span<std::uint8_t> moved, int iterations,
+                  double tolerance) {
   std::array<double, RowSlabs::groups> motion;
   for (int k = 0; k < iterations; ++k) {
-    for_groups(rows, slabs, [&](Index g, std::span<ContactRow> group) { motion[g] = satisfy_group(group, x1, awake, moved, tolerance); });
+    for_groups(rows, slabs, [&](Index g, std::span<ContactRow> group) {
+      motion[g] = satisfy_group(group, x1, awake, moved, tolerance);
+    });
     if (*std::ranges::max_element(motion) <= tolerance) return;
   }
 }

@@ -12,14 +12,16 @@ Index root(std::vector<Index>& parent, Index k) {
   return k;
 }
 
-std::vector<std::uint8_t> cut_edges(const CollisionSurface& surface, std::span<const Intersection> found) {
+std::vector<std::uint8_t> cut_edges(const CollisionSurface& surface,
+                                    std::span<const Intersection> found) {
   std::vector<std::uint8_t> cut(surface.edges.size(), 0);
   for (const Intersection& at : found) cut[at.edge] ^= 1;
   return cut;
 }
 
 // Numbered by their least vertices.
-std::vector<Index> joined_without(const CollisionSurface& surface, std::span<const std::uint8_t> cut, Index& count) {
+std::vector<Index> joined_without(const CollisionSurface& surface,
+                                  std::span<const std::uint8_t> cut, Index& count) {
   std::vector<Index> parent(static_cast<std::size_t>(surface.vertices)), region(parent.size());
   for (Index v = 0; v < surface.vertices; ++v) parent[v] = v;
   for (std::size_t e = 0; e < surface.edges.size(); ++e) {
@@ -28,12 +30,14 @@ std::vector<Index> joined_without(const CollisionSurface& surface, std::span<con
     parent[std::max(a, b)] = std::min(a, b);
   }
   count = 0;
-  for (Index v = 0; v < surface.vertices; ++v) region[v] = root(parent, v) == v ? count++ : region[parent[v]];
+  for (Index v = 0; v < surface.vertices; ++v)
+    region[v] = root(parent, v) == v ? count++ : region[parent[v]];
   return region;
 }
 
 // Not 0 for regions that are not the largest of their body.
-std::vector<std::uint8_t> spots(const CollisionSurface& surface, std::span<const Index> region, Index count) {
+std::vector<std::uint8_t> spots(const CollisionSurface& surface, std::span<const Index> region,
+                                Index count) {
   std::vector<Index> size(static_cast<std::size_t>(count), 0), body(size.size(), -1), largest;
   for (Index v = 0; v < surface.vertices; ++v) {
     ++size[region[v]];
@@ -49,7 +53,8 @@ std::vector<std::uint8_t> spots(const CollisionSurface& surface, std::span<const
 
 }  // namespace
 
-ContourRegions contour_regions(const CollisionSurface& surface, std::span<const Intersection> found, std::span<const ContourEnd> ends) {
+ContourRegions contour_regions(const CollisionSurface& surface, std::span<const Intersection> found,
+                               std::span<const ContourEnd> ends) {
   constexpr double clear = 0.3;  // mean of unit vectors; below that they contradict one another
   const std::vector<std::uint8_t> cut = cut_edges(surface, found);
   Index count = 0;
@@ -76,7 +81,8 @@ ContourRegions contour_regions(const CollisionSurface& surface, std::span<const 
   }
   for (std::size_t r = 0; r < regions.way.size(); ++r) {
     const double length = regions.way[r].norm();
-    regions.way[r] = votes[r] > 0 && length > clear * votes[r] ? Vec3(regions.way[r] / length) : Vec3(Vec3::Zero());
+    regions.way[r] = votes[r] > 0 && length > clear * votes[r] ? Vec3(regions.way[r] / length)
+                                                               : Vec3(Vec3::Zero());
   }
   return regions;
 }

@@ -7,13 +7,17 @@ namespace taut {
 
 namespace {
 
-double length(const EdgeVertices& edge, std::span<const Vec3> x) { return (x[edge[1]] - x[edge[0]]).norm(); }
-bool is_cloth(const CollisionSurface& surface, std::size_t e) { return !surface.is_solid[surface.edges[e][0]]; }
+double length(const EdgeVertices& edge, std::span<const Vec3> x) {
+  return (x[edge[1]] - x[edge[0]]).norm();
+}
+bool is_cloth(const CollisionSurface& surface, std::size_t e) {
+  return !surface.is_solid[surface.edges[e][0]];
+}
 
 }  // namespace
 
-std::vector<LengthRange> length_ranges(const CollisionSurface& surface, std::span<const Vec3> x, std::span<const double> rest,
-                                       double slack) {
+std::vector<LengthRange> length_ranges(const CollisionSurface& surface, std::span<const Vec3> x,
+                                       std::span<const double> rest, double slack) {
   std::vector<LengthRange> ranges;
   for (std::size_t e = 0; e < surface.edges.size(); ++e) {
     const auto [shorter, longer] = std::minmax({length(surface.edges[e], x), rest[e]});
@@ -22,8 +26,8 @@ std::vector<LengthRange> length_ranges(const CollisionSurface& surface, std::spa
   return ranges;
 }
 
-void project_lengths(const CollisionSurface& surface, std::span<const LengthRange> ranges, std::span<const std::uint8_t> held,
-                     std::span<Vec3> x, int iterations) {
+void project_lengths(const CollisionSurface& surface, std::span<const LengthRange> ranges,
+                     std::span<const std::uint8_t> held, std::span<Vec3> x, int iterations) {
   for (int k = 0; k < iterations; ++k)
     for (std::size_t e = 0; e < surface.edges.size(); ++e) {
       const auto [a, b] = surface.edges[e];
@@ -38,14 +42,17 @@ void project_lengths(const CollisionSurface& surface, std::span<const LengthRang
     }
 }
 
-double worst_stretch(const CollisionSurface& surface, std::span<const double> rest, std::span<const Vec3> x) {
+double worst_stretch(const CollisionSurface& surface, std::span<const double> rest,
+                     std::span<const Vec3> x) {
   double worst = 0.0;
   for (std::size_t e = 0; e < surface.edges.size(); ++e)
-    if (is_cloth(surface, e) && rest[e] > 0.0) worst = std::max(worst, std::abs(length(surface.edges[e], x) / rest[e] - 1));
+    if (is_cloth(surface, e) && rest[e] > 0.0)
+      worst = std::max(worst, std::abs(length(surface.edges[e], x) / rest[e] - 1));
   return worst;
 }
 
-double worst_excess(const CollisionSurface& surface, std::span<const LengthRange> ranges, std::span<const Vec3> x) {
+double worst_excess(const CollisionSurface& surface, std::span<const LengthRange> ranges,
+                    std::span<const Vec3> x) {
   double worst = 0.0;
   for (std::size_t e = 0; e < surface.edges.size(); ++e) {
     if (!is_cloth(surface, e) || ranges[e].least <= 0.0) continue;

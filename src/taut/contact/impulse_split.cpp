@@ -21,7 +21,8 @@ Basis basis_of(std::span<const Vec3> normals) {
   for (std::size_t k = 0; k < normals.size() && basis.rank < 3; ++k) {
     Vec3 rest = normals[k];
     Vec3 along = Vec3::Zero();
-    for (int pass = 0; pass < 2; ++pass)  // twice, so that nearly parallel normals still give an orthogonal basis
+    // twice, so that nearly parallel normals still give an orthogonal basis
+    for (int pass = 0; pass < 2; ++pass)
       for (int c = 0; c < basis.rank; ++c) {
         const double share = basis.q[c].dot(rest);
         along[c] += share;
@@ -49,7 +50,8 @@ Vec3 split_impulse(std::span<const Vec3> normals, const Vec3& j, std::span<doubl
     tangential -= share[c] * basis.q[c];
   }
   for (int c = basis.rank - 1; c >= 0; --c) {
-    for (int later = c + 1; later < basis.rank; ++later) share[c] -= basis.r(c, later) * share[later];
+    for (int later = c + 1; later < basis.rank; ++later)
+      share[c] -= basis.r(c, later) * share[later];
     share[c] /= basis.r(c, c);
     lambda[basis.which[c]] = share[c];
   }

@@ -29,12 +29,15 @@ std::vector<Intersection> find_intersections(BroadPhase& broad_phase, std::span<
         if (apart[k]) continue;
         const auto [a, b, c, d, e] = corners[k];
         const Meeting meeting = segment_meets_triangle(x[a], x[b], x[c], x[d], x[e]);
-        if (meeting.meets) found[static_cast<std::size_t>(part)].push_back({pairs[k].edge, pairs[k].triangle, meeting.touching});
+        if (meeting.meets)
+          found[static_cast<std::size_t>(part)].push_back(
+              {pairs[k].edge, pairs[k].triangle, meeting.touching});
       }
     }
   });
   std::vector<Intersection> intersections;
-  for (const auto& list : found) intersections.insert(intersections.end(), list.begin(), list.end());
+  for (const auto& list : found)
+    intersections.insert(intersections.end(), list.begin(), list.end());
   std::ranges::sort(intersections);
   return intersections;
 }

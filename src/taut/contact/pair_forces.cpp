@@ -12,7 +12,9 @@ constexpr Index rows_per_task = 2048;
 
 PairForce force_of(const ContactRow& row, double h) {
   const Vec3 force = (row.lambda * row.normal + row.tangential) / (h * h);
-  return {row.node, {static_cast<float>(force.x()), static_cast<float>(force.y()), static_cast<float>(force.z())}};
+  return {row.node,
+          {static_cast<float>(force.x()), static_cast<float>(force.y()),
+           static_cast<float>(force.z())}};
 }
 
 // start[v]: first entry with at least this vertex first; entries ascend by it.
@@ -40,7 +42,8 @@ std::vector<PairForce> forces_of(std::span<const ContactRow> rows, double h, Ind
   return ordered;
 }
 
-PairForces::PairForces(std::span<const PairForce> list, Index vertices) : list_(list), start_(starts(list, vertices)) {}
+PairForces::PairForces(std::span<const PairForce> list, Index vertices)
+    : list_(list), start_(starts(list, vertices)) {}
 
 Vec3 PairForces::of(const std::array<Index, 4>& node) const {
   Vec3 sum = Vec3::Zero();

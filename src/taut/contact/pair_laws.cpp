@@ -13,12 +13,14 @@ PairLaw general_law(const ContactOptions& options, const CollisionBody& a, const
 }
 
 bool names(const ContactPair& pair, const CollisionBody& a, const CollisionBody& b) {
-  return (pair.cloth == a.name && pair.with == b.name) || (pair.cloth == b.name && pair.with == a.name);
+  return (pair.cloth == a.name && pair.with == b.name) ||
+         (pair.cloth == b.name && pair.with == a.name);
 }
 
 }  // namespace
 
-PairLaws::PairLaws(const ContactOptions& options, std::span<const CollisionBody> bodies) : bodies_(static_cast<Index>(bodies.size())) {
+PairLaws::PairLaws(const ContactOptions& options, std::span<const CollisionBody> bodies)
+    : bodies_(static_cast<Index>(bodies.size())) {
   for (const CollisionBody& a : bodies)
     for (const CollisionBody& b : bodies) {
       PairLaw law = general_law(options, a, b);
@@ -31,8 +33,12 @@ PairLaws::PairLaws(const ContactOptions& options, std::span<const CollisionBody>
     }
 }
 
-double PairLaws::smallest_thickness() const { return std::ranges::min_element(laws_, {}, &PairLaw::thickness)->thickness; }
+double PairLaws::smallest_thickness() const {
+  return std::ranges::min_element(laws_, {}, &PairLaw::thickness)->thickness;
+}
 
-double PairLaws::largest_thickness() const { return std::ranges::max_element(laws_, {}, &PairLaw::thickness)->thickness; }
+double PairLaws::largest_thickness() const {
+  return std::ranges::max_element(laws_, {}, &PairLaw::thickness)->thickness;
+}
 
 }  // namespace taut

@@ -1,5 +1,6 @@
 #pragma once
-// What any two bodies of a collision surface keep between them: their thickness (m) and friction (Coulomb's mu).
+// What any two bodies of a collision surface keep between them: their thickness (m) and friction
+// (Coulomb's mu).
 //
 //   two cloths, or one and itself   the scene's, ContactOptions::thickness and friction
 //   a cloth and a solid             the solid's; its thickness, if 0, as cloth to cloth
@@ -28,9 +29,12 @@ struct PairLaw {
 
 class PairLaws {
  public:
-  // At least one body. Pairs that name something else than these bodies (an analytic solid) are passed over.
+  // At least one body. Pairs that name something else than these bodies (an analytic solid) are
+  // passed over.
   PairLaws(const ContactOptions& options, std::span<const CollisionBody> bodies);
-  const PairLaw& of(Index body, Index other) const { return laws_[static_cast<std::size_t>(body * bodies_ + other)]; }
+  const PairLaw& of(Index body, Index other) const {
+    return laws_[static_cast<std::size_t>(body * bodies_ + other)];
+  }
   double smallest_thickness() const;
   double largest_thickness() const;
 

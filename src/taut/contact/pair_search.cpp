@@ -16,19 +16,21 @@ bool any_in(const std::array<Index, 4>& nodes, std::span<const std::uint8_t> mar
 }
 
 // picked: those pairs that have a marked node, or those that have none, in their order.
-void pick_pairs(std::span<const std::array<Index, 4>> pairs, std::span<const std::uint8_t> marked, bool with,
-                std::vector<std::array<Index, 4>>& picked) {
+void pick_pairs(std::span<const std::array<Index, 4>> pairs, std::span<const std::uint8_t> marked,
+                bool with, std::vector<std::array<Index, 4>>& picked) {
   picked.clear();
   const auto pick = [&](Index begin, Index end, std::vector<std::array<Index, 4>>& of_chunk) {
-    std::ranges::copy_if(pairs.subspan(begin, end - begin), std::back_inserter(of_chunk),
-                         [&](const std::array<Index, 4>& nodes) { return any_in(nodes, marked) == with; });
+    std::ranges::copy_if(
+        pairs.subspan(begin, end - begin), std::back_inserter(of_chunk),
+        [&](const std::array<Index, 4>& nodes) { return any_in(nodes, marked) == with; });
   };
   collect(static_cast<Index>(pairs.size()), 16 * chunk, pick, picked);
 }
 
 }  // namespace
 
-// Of a part of the broad phase's pairs: those that come within reach on the way to end_, and those that may be within it at the start.
+// Of a part of the broad phase's pairs: those that come within reach on the way to end_, and those
+// that may be within it at the start.
 struct PairSearch::Part {
   std::vector<Corners> kept;
   std::vector<CollisionPair> close;
@@ -52,8 +54,10 @@ void PairSearch::keep(std::span<const Pair> pairs, bool edges, bool close, Part&
   }
 }
 
-// Adds the candidates among the broad phase's pairs, and to `close` those that may be within reach at the start.
-void PairSearch::add_candidates(std::span<const Vec3> x0, std::span<const std::uint8_t> moved, std::vector<CollisionPair>* close) {
+// Adds the candidates among the broad phase's pairs, and to `close` those that may be within reach
+// at the start.
+void PairSearch::add_candidates(std::span<const Vec3> x0, std::span<const std::uint8_t> moved,
+                                std::vector<CollisionPair>* close) {
   if (moved.empty()) {
     broad_phase_.refit(x0, end_, reach_);
   } else {
@@ -62,14 +66,22 @@ void PairSearch::add_candidates(std::span<const Vec3> x0, std::span<const std::u
   ways_.set(x0, end_);
   std::vector<Part> parts(static_cast<std::size_t>(broad_phase_.vertex_parts()));
   broad_phase_.for_vertex_triangle(
-      [&](Index part, std::span<const VertexTriangle> pairs) { keep(pairs, false, close != nullptr, parts[part]); }, moved);
+      [&](Index part, std::span<const VertexTriangle> pairs) {
+        keep(pairs, false, close != nullptr, parts[part]);
+      },
+      moved);
   add(parts, triangles_, close);
   parts.assign(static_cast<std::size_t>(broad_phase_.edge_parts()), {});
-  broad_phase_.for_edge_edge([&](Index part, std::span<const EdgeEdge> pairs) { keep(pairs, true, close != nullptr, parts[part]); }, moved);
+  broad_phase_.for_edge_edge(
+      [&](Index part, std::span<const EdgeEdge> pairs) {
+        keep(pairs, true, close != nullptr, parts[part]);
+      },
+      moved);
   add(parts, edges_, close);
 }
 
-void PairSearch::add(std::span<const Part> parts, Candidates& candidates, std::vector<CollisionPair>* close) {
+void PairSearch::add(std::span<const Part> parts, Candidates& candidates,
+                     std::vector<CollisionPair>* close) {
   for (const Part& part : parts) {
     candidates.pairs.insert(candidates.pairs.end(), part.kept.begin(), part.kept.end());
     if (close) close->insert(close->end(), part.close.begin(), part.close.end());
@@ -77,8 +89,9 @@ void PairSearch::add(std::span<const Part> parts, Candidates& candidates, std::v
   }
 }
 
-std::vector<NearPair> PairSearch::near(std::span<const Vec3> x0, std::span<const Vec3> x1, double reach,
-                                       const std::function<double(const CollisionPair&)>& thickness) {
+std::vector<NearPair> PairSearch::near(
+    std::span<const Vec3> x0, std::span<const Vec3> x1, double reach,
+    const std::function<double(const CollisionPair&)>& thickness) {
   reach_ = reach;
   end_.assign(x1.begin(), x1.end());
   triangles_.pairs.clear();
@@ -91,7 +104,9 @@ std::vector<NearPair> PairSearch::near(std::span<const Vec3> x0, std::span<const
       [&](Index begin, Index end, std::vector<NearPair>& found) {
         for (Index k = begin; k < end; ++k) {
           const NearPair candidate{close[k], closest(close[k], x0)};
-          if (candidate.proximity.inside && candidate.proximity.distance < thickness(candidate.pair)) found.push_back(candidate);
+          if (candidate.proximity.inside &&
+              candidate.proximity.distance < thickness(candidate.pair))
+            found.push_back(candidate);
         }
       },
       near);
@@ -118,8 +133,10 @@ void PairSearch::follow(std::span<const Vec3> x0, std::span<const Vec3> x1, doub
   add_candidates(x0, far_, nullptr);
 }
 
-void PairSearch::add_colliding(const Candidates& candidates, std::span<const Vec3> x0, std::span<const Vec3> x1, double separation,
-                               std::span<const std::uint8_t> moved, const std::function<bool(const CollisionPair&)>& skip,
+void PairSearch::add_colliding(const Candidates& candidates, std::span<const Vec3> x0,
+                               std::span<const Vec3> x1, double separation,
+                               std::span<const std::uint8_t> moved,
+                               const std::function<bool(const CollisionPair&)>& skip,
                                std::vector<CollidingPair>& colliding) {
   std::span<const Corners> pairs = candidates.pairs;
   if (!moved.empty()) {
@@ -148,9 +165,9 @@ void PairSearch::add_colliding(const Candidates& candidates, std::span<const Vec
   }
 }
 
-std::vector<CollidingPair> PairSearch::colliding(std::span<const Vec3> x0, std::span<const Vec3> x1, double separation,
-                                                 std::span<const std::uint8_t> moved,
-                                                 const std::function<bool(const CollisionPair&)>& skip) {
+std::vector<CollidingPair> PairSearch::colliding(
+    std::span<const Vec3> x0, std::span<const Vec3> x1, double separation,
+    std::span<const std::uint8_t> moved, const std::function<bool(const CollisionPair&)>& skip) {
   follow(x0, x1, separation);
   std::vector<CollidingPair> colliding;
   add_colliding(triangles_, x0, x1, separation, moved, skip, colliding);

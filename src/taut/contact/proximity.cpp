@@ -8,7 +8,8 @@ namespace taut {
 
 namespace {
 
-// sin² of the angle below which two directions have no cross product worth the name: its relative error is u / sin.
+// sin² of the angle below which two directions have no cross product worth the name: its relative
+// error is u / sin.
 constexpr double parallel_sine2 = 1e-16;
 // Squares below this have lost digits to underflow.
 constexpr double smallest_square = 1e-280;
@@ -24,7 +25,8 @@ Vec3 any_orthogonal(const Vec3& e) {
   return e.cross(Vec3::Unit(least)).normalized();
 }
 
-// The closest point of the segment from 0 to e to the point w: at `at` e, w - at e = `offset`, of squared length `squared_distance`.
+// The closest point of the segment from 0 to e to the point w: at `at` e, w - at e = `offset`, of
+// squared length `squared_distance`.
 struct OnSegment {
   double at;
   Vec3 offset;
@@ -41,7 +43,8 @@ OnSegment closest_on_segment(const Vec3& w, const Vec3& e) {
   }
   const double at = along / length2;
   Vec3 offset = w - at * e;
-  // What the first subtraction left along e is rounding of w; the second removes it, so that the offset is orthogonal to its own accuracy.
+  // What the first subtraction left along e is rounding of w; the second removes it, so that the
+  // offset is orthogonal to its own accuracy.
   offset -= (offset.dot(e) / length2) * e;
   return {at, offset, offset.squaredNorm()};
 }
@@ -75,21 +78,26 @@ PointTriangleProximity closest_point_triangle(const Vec3& ap, const Vec3& ab, co
       return result;
     }
   }
-  const OnSegment sides[3] = {closest_on_segment(ap, ab), closest_on_segment(ap, ac), closest_on_segment(ap - ab, ac - ab)};
+  const OnSegment sides[3] = {closest_on_segment(ap, ab), closest_on_segment(ap, ac),
+                              closest_on_segment(ap - ab, ac - ab)};
   int nearest = 0;
   for (int k = 1; k < 3; ++k)
     if (sides[k].squared_distance < sides[nearest].squared_distance) nearest = k;
   const OnSegment& side = sides[nearest];
   result.distance = std::sqrt(side.squared_distance);
   if (!direction_of(side.offset, side.squared_distance, result.normal))
-    result.normal = has_normal ? Vec3(n / std::sqrt(n2)) : any_orthogonal(nearest == 0 ? ab : nearest == 1 ? ac : Vec3(ac - ab));
+    result.normal = has_normal ? Vec3(n / std::sqrt(n2))
+                               : any_orthogonal(nearest == 0   ? ab
+                                                : nearest == 1 ? ac
+                                                               : Vec3(ac - ab));
   if (nearest == 0) result.weights = {1.0 - side.at, side.at, 0.0};
   if (nearest == 1) result.weights = {1.0 - side.at, 0.0, side.at};
   if (nearest == 2) result.weights = {0.0, 1.0 - side.at, side.at};
   return result;
 }
 
-PointTriangleProximity closest_point_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+PointTriangleProximity closest_point_triangle(const Vec3& p, const Vec3& a, const Vec3& b,
+                                              const Vec3& c) {
   return closest_point_triangle(p - a, b - a, c - a);
 }
 
@@ -110,8 +118,8 @@ EdgeEdgeProximity closest_edge_edge(const Vec3& ca, const Vec3& ab, const Vec3& 
     }
   }
   // Not two inner points, so a corner of one edge: a, b against cd; c, d against ab.
-  const OnSegment corners[4] = {closest_on_segment(ca, cd), closest_on_segment(ca + ab, cd), closest_on_segment(-ca, ab),
-                                closest_on_segment(cd - ca, ab)};
+  const OnSegment corners[4] = {closest_on_segment(ca, cd), closest_on_segment(ca + ab, cd),
+                                closest_on_segment(-ca, ab), closest_on_segment(cd - ca, ab)};
   int nearest = 0;
   for (int k = 1; k < 4; ++k)
     if (corners[k].squared_distance < corners[nearest].squared_distance) nearest = k;

@@ -1,18 +1,23 @@
 #pragma once
 // Closest points of a point and a triangle, and of two edges.
 //
-//   point-triangle   q = wa a + wb b + wc c, weights >= 0 with sum 1:   |p - q| is least over the triangle
-//   edge-edge        r = (1 - s) a + s b,  q = (1 - t) c + t d, s and t in [0, 1]:   |r - q| is least over both edges
+//   point-triangle   q = wa a + wb b + wc c, weights >= 0 with sum 1:   |p - q| is least over the
+//   triangle
+//   edge-edge        r = (1 - s) a + s b,  q = (1 - t) c + t d, s and t in [0, 1]:   |r - q| is
+//   least over both edges
 //
 //   distance     m
-//   normal       unit vector from q to p (to r), orthogonal to the side or the face that q lies in (to both edges where both points are
-//                inner ones) even where p - q is lost in rounding. Where the distance is 0: the triangle's normal (b - a) x (c - a), the
-//                edges' (b - a) x (d - c); of shapes that have none, any unit vector orthogonal to the side. Never NaN
+//   normal       unit vector from q to p (to r), orthogonal to the side or the face that q lies in
+//                (to both edges where both points are inner ones) even where p - q is lost in
+//                rounding. Where the distance is 0: the triangle's normal (b - a) x (c - a), the
+//                edges' (b - a) x (d - c); of shapes that have none, any unit vector orthogonal to
+//                the side. Never NaN
 //
-// Finite input is assumed; nothing is thrown. Triangles and pairs of edges with an angle below 1e-8 count as degenerate (as parallel): the
-// closest pair with a side (with a corner) is then taken, which is off by less than 1e-8 of their size. Edges may have no length.
-// Closest points on lines: Ericson, "Real-Time Collision Detection" (2005), 5.1; the choice between inner points and sides is made by
-// comparing.
+// Finite input is assumed; nothing is thrown. Triangles and pairs of edges with an angle below 1e-8
+// count as degenerate (as parallel): the closest pair with a side (with a corner) is then taken,
+// which is off by less than 1e-8 of their size. Edges may have no length. Closest points on lines:
+// Ericson, "Real-Time Collision Detection" (2005), 5.1; the choice between inner points and sides
+// is made by comparing.
 
 #include <array>
 
@@ -25,7 +30,8 @@ struct PointTriangleProximity {
   Vec3 normal = Vec3::UnitZ();
   std::array<double, 3> weights{1.0, 0.0, 0.0};
 };
-PointTriangleProximity closest_point_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
+PointTriangleProximity closest_point_triangle(const Vec3& p, const Vec3& a, const Vec3& b,
+                                              const Vec3& c);
 // The same for p - a, b - a, c - a, for those who know differences better than positions.
 PointTriangleProximity closest_point_triangle(const Vec3& ap, const Vec3& ab, const Vec3& ac);
 

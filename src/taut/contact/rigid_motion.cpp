@@ -14,7 +14,8 @@ constexpr int newton_limit = 30;
 
 Mat3 turn_by(const Vec3& angle_vector) {
   const double angle = angle_vector.norm();
-  return angle > 0.0 ? Mat3(Eigen::AngleAxisd(angle, angle_vector / angle).toRotationMatrix()) : Mat3(Mat3::Identity());
+  return angle > 0.0 ? Mat3(Eigen::AngleAxisd(angle, angle_vector / angle).toRotationMatrix())
+                     : Mat3(Mat3::Identity());
 }
 
 // sum m r × a r for a = R J: twice the axial vector of its antisymmetric part.
@@ -37,7 +38,8 @@ std::optional<Mat3> discrete_turn(const Mat3& j, const Vec3& momentum) {
     if (!step.allFinite() || step.norm() > most_turn) return {};
     rotation = turn_by(step) * rotation;
     if (missing.norm() <= accurate || step.norm() < 1e-15)
-      return Eigen::AngleAxisd(rotation).angle() <= most_turn ? std::optional(rotation) : std::nullopt;
+      return Eigen::AngleAxisd(rotation).angle() <= most_turn ? std::optional(rotation)
+                                                              : std::nullopt;
   }
   return {};
 }
@@ -59,7 +61,9 @@ Mat3 best_turn(const Mat3& covariance) {
   const Vec3 s = svd.singularValues();
   if (s[0] == 0.0) return Mat3::Identity();
   if (s[1] < 1e-9 * s[0])
-    return Eigen::Quaterniond::FromTwoVectors(Vec3(svd.matrixV().col(0)), Vec3(svd.matrixU().col(0))).toRotationMatrix();
+    return Eigen::Quaterniond::FromTwoVectors(Vec3(svd.matrixV().col(0)),
+                                              Vec3(svd.matrixU().col(0)))
+        .toRotationMatrix();
   Mat3 mirror = Mat3::Identity();
   mirror(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
   return svd.matrixU() * mirror * svd.matrixV().transpose();
@@ -69,7 +73,8 @@ Mat3 best_turn(const Mat3& covariance) {
 
 double RigidMotion::angle() const { return Eigen::AngleAxisd(rotation).angle(); }
 
-RigidMotion momentum_keeping_motion(std::span<const Vec3> x0, std::span<const Vec3> x1, std::span<const double> mass) {
+RigidMotion momentum_keeping_motion(std::span<const Vec3> x0, std::span<const Vec3> x1,
+                                    std::span<const double> mass) {
   RigidMotion motion;
   motion.from = centre(x0, mass);
   motion.to = centre(x1, mass);
@@ -86,11 +91,13 @@ RigidMotion momentum_keeping_motion(std::span<const Vec3> x0, std::span<const Ve
   }
   motion.exact = false;
   const Vec3 turn = least_solution(j.trace() * Mat3::Identity() - j, momentum);
-  motion.rotation = turn.allFinite() ? turn_by(turn * std::min(1.0, most_turn / turn.norm())) : Mat3(Mat3::Identity());
+  motion.rotation = turn.allFinite() ? turn_by(turn * std::min(1.0, most_turn / turn.norm()))
+                                     : Mat3(Mat3::Identity());
   return motion;
 }
 
-std::optional<RigidMotion> motion_through(std::span<const Vec3> x0, std::span<const Vec3> x1, double tolerance) {
+std::optional<RigidMotion> motion_through(std::span<const Vec3> x0, std::span<const Vec3> x1,
+                                          double tolerance) {
   RigidMotion motion;
   motion.from = centre(x0, {});
   motion.to = centre(x1, {});
@@ -101,7 +108,8 @@ std::optional<RigidMotion> motion_through(std::span<const Vec3> x0, std::span<co
   };
   if (fits()) return motion;
   Mat3 covariance = Mat3::Zero();
-  for (std::size_t i = 0; i < x0.size(); ++i) covariance += (x1[i] - motion.to) * (x0[i] - motion.from).transpose();
+  for (std::size_t i = 0; i < x0.size(); ++i)
+    covariance += (x1[i] - motion.to) * (x0[i] - motion.from).transpose();
   motion.rotation = best_turn(covariance);
   if (!fits() || motion.angle() > most_turn) return {};
   return motion;

@@ -5,12 +5,15 @@
 //
 // momentum_keeping: from and to are the centres of mass before and after, and R solves
 //   sum m r × R r = sum m r × (x1 - to),     r = x0 - from
-// so that the average velocities (x1 - x0)/h have the linear and angular momentum that they had (about any point), to rounding. It is the
-// equation of the discrete rigid body (Moser & Veselov 1991); Bridson et al. 2002 turn by ω h with I ω = L, which keeps it to first order
-// in the angle only. It has no solution beyond about 90°: R is then the turn by ω h, cut at one radian, and `exact` is false.
+// so that the average velocities (x1 - x0)/h have the linear and angular momentum that they had
+// (about any point), to rounding. It is the equation of the discrete rigid body (Moser & Veselov
+// 1991); Bridson et al. 2002 turn by ω h with I ω = L, which keeps it to first order in the angle
+// only. It has no solution beyond about 90°: R is then the turn by ω h, cut at one radian, and
+// `exact` is false.
 //
-// Interpolated linearly, x0 + t (x1 - x0), a rigid motion by less than 180° is an affine map with an inverse at every t: points of the set
-// never meet on the way, and their distances shrink by cos(angle/2) at most.
+// Interpolated linearly, x0 + t (x1 - x0), a rigid motion by less than 180° is an affine map with
+// an inverse at every t: points of the set never meet on the way, and their distances shrink by
+// cos(angle/2) at most.
 
 #include <optional>
 #include <span>
@@ -28,10 +31,13 @@ struct RigidMotion {
 };
 
 // x0, x1: m; mass: kg, > 0; one each a node.
-RigidMotion momentum_keeping_motion(std::span<const Vec3> x0, std::span<const Vec3> x1, std::span<const double> mass);
+RigidMotion momentum_keeping_motion(std::span<const Vec3> x0, std::span<const Vec3> x1,
+                                    std::span<const double> mass);
 
-// The rigid motion that takes x0 to x1, to within `tolerance` (m); the least turn where the points leave it open (one point, or points on
-// a line). Nothing where there is none, or it turns by more than one radian.
-std::optional<RigidMotion> motion_through(std::span<const Vec3> x0, std::span<const Vec3> x1, double tolerance);
+// The rigid motion that takes x0 to x1, to within `tolerance` (m); the least turn where the points
+// leave it open (one point, or points on a line). Nothing where there is none, or it turns by more
+// than one radian.
+std::optional<RigidMotion> motion_through(std::span<const Vec3> x0, std::span<const Vec3> x1,
+                                          double tolerance);
 
 }  // namespace taut

@@ -22,14 +22,17 @@ Index RigidZones::merge(Index a, Index b) {
   into.nodes.insert(into.nodes.end(), from.nodes.begin(), from.nodes.end());
   std::inplace_merge(into.nodes.begin(), into.nodes.begin() + middle, into.nodes.end());
   for (const ZoneAttachment& attachment : from.attachments) {
-    const auto same = [&](const ZoneAttachment& other) { return other.holder == attachment.holder && other.node == attachment.node; };
+    const auto same = [&](const ZoneAttachment& other) {
+      return other.holder == attachment.holder && other.node == attachment.node;
+    };
     if (std::ranges::none_of(into.attachments, same)) into.attachments.push_back(attachment);
   }
   into.changed = true;
   return kept;
 }
 
-bool RigidZones::join(std::span<const Index> nodes, std::span<const Vec3> x0, std::span<const Vec3> x1) {
+bool RigidZones::join(std::span<const Index> nodes, std::span<const Vec3> x0,
+                      std::span<const Vec3> x1) {
   Index zone = -1;
   bool changed = false;
   for (const Index node : nodes) {
@@ -40,7 +43,9 @@ bool RigidZones::join(std::span<const Index> nodes, std::span<const Vec3> x0, st
   if (zone < 0) return false;
   RigidZone& joined = zones_.at(zone);
   for (const Index node : nodes) {
-    if (!held_[node] || std::ranges::find(joined.attachments, node, &ZoneAttachment::holder) != joined.attachments.end()) continue;
+    if (!held_[node] || std::ranges::find(joined.attachments, node, &ZoneAttachment::holder) !=
+                            joined.attachments.end())
+      continue;
     joined.attachments.push_back({node, node, x0[node], x1[node]});
     changed = joined.changed = true;
   }
@@ -49,20 +54,24 @@ bool RigidZones::join(std::span<const Index> nodes, std::span<const Vec3> x0, st
 
 bool RigidZones::attach(Index node, Index solid, const Vec3& from, const Vec3& to) {
   RigidZone& zone = zones_.at(zone_with(node));
-  const auto same = [&](const ZoneAttachment& other) { return other.holder == -1 - solid && other.node == node; };
+  const auto same = [&](const ZoneAttachment& other) {
+    return other.holder == -1 - solid && other.node == node;
+  };
   if (std::ranges::any_of(zone.attachments, same)) return false;
   zone.attachments.push_back({-1 - solid, node, from, to});
   zone.changed = true;
   return true;
 }
 
-const RigidZone* RigidZones::move(std::span<const Vec3> x0, std::span<Vec3> x1, double tolerance, std::span<std::uint8_t> moved) {
+const RigidZone* RigidZones::move(std::span<const Vec3> x0, std::span<Vec3> x1, double tolerance,
+                                  std::span<std::uint8_t> moved) {
   for (auto& [first, zone] : zones_)
     if (std::exchange(zone.changed, false) && !move(zone, x0, x1, tolerance, moved)) return &zone;
   return nullptr;
 }
 
-bool RigidZones::move(RigidZone& zone, std::span<const Vec3> x0, std::span<Vec3> x1, double tolerance, std::span<std::uint8_t> moved) {
+bool RigidZones::move(RigidZone& zone, std::span<const Vec3> x0, std::span<Vec3> x1,
+                      double tolerance, std::span<std::uint8_t> moved) {
   std::vector<Vec3> from, to;
   std::vector<double> mass;
   for (const ZoneAttachment& attachment : zone.attachments) {
@@ -106,7 +115,8 @@ const RigidZone* RigidZones::zone_of(Index node) const {
 
 bool RigidZones::rides(Index node, Index solid) const {
   const RigidZone* zone = zone_of(node);
-  return zone && std::ranges::find(zone->attachments, -1 - solid, &ZoneAttachment::holder) != zone->attachments.end();
+  return zone && std::ranges::find(zone->attachments, -1 - solid, &ZoneAttachment::holder) !=
+                     zone->attachments.end();
 }
 
 Index RigidZones::node_count() const { return static_cast<Index>(zone_of_.size()); }

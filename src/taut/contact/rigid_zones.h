@@ -1,12 +1,15 @@
 #pragma once
-// Rigid impact zones: nodes that impulses could not keep apart move as one rigid body over the step (Provot 1997; Bridson, Fedkiw &
-// Anderson 2002, section 7.4; paper Section 7). The last resort: it holds since nothing meets inside a body that moves rigidly.
+// Rigid impact zones: nodes that impulses could not keep apart move as one rigid body over the step
+// (Provot 1997; Bridson, Fedkiw & Anderson 2002, section 7.4; paper Section 7). The last resort: it
+// holds since nothing meets inside a body that moves rigidly.
 //
 //   zone         nodes joined by pairs that collide; zones that share a pair merge
-//   attachment   a point that the zone must carry along: a held node (pinned, or of a solid's mesh), from where it is at the start to where
+//   attachment   a point that the zone must carry along: a held node (pinned, or of a solid's
+//                mesh), from where it is at the start to where
 //   it ends;
-//                or a node that would end inside an analytic solid, which then rides with it. They count as infinitely heavy: a zone that
-//                has some moves as they do, and keeps no momentum; one that has none keeps linear and angular momentum (rigid_motion.h)
+//                or a node that would end inside an analytic solid, which then rides with it. They
+//                count as infinitely heavy: a zone that has some moves as they do, and keeps no
+//                momentum; one that has none keeps linear and angular momentum (rigid_motion.h)
 //   contradiction  attachments that no rigid motion fits: the zone is pinched
 //
 // Held nodes join no zone: two zones on one solid stay two.
@@ -35,21 +38,26 @@ struct RigidZone {
 class RigidZones {
  public:
   // mass: kg, one a node. held: not 0 where a node's motion is given.
-  RigidZones(std::span<const double> mass, std::span<const std::uint8_t> held) : mass_(mass), held_(held) {}
+  RigidZones(std::span<const double> mass, std::span<const std::uint8_t> held)
+      : mass_(mass), held_(held) {}
 
   // Joins the free nodes and attaches the held ones. False: all of that was so already.
   bool join(std::span<const Index> nodes, std::span<const Vec3> x0, std::span<const Vec3> x1);
-  // The node (in a zone or not yet) rides with a solid, which would carry it to `to`. False: it does so already.
+  // The node (in a zone or not yet) rides with a solid, which would carry it to `to`. False: it
+  // does so already.
   bool attach(Index node, Index solid, const Vec3& from, const Vec3& to);
-  // Moves the nodes of changed zones and marks them in `moved`. What attachments fit to within `tolerance` (m) is no contradiction. Returns
-  // the first zone (by its least node) whose attachments contradict each other, or null; it is not moved.
-  const RigidZone* move(std::span<const Vec3> x0, std::span<Vec3> x1, double tolerance, std::span<std::uint8_t> moved);
+  // Moves the nodes of changed zones and marks them in `moved`. What attachments fit to within
+  // `tolerance` (m) is no contradiction. Returns the first zone (by its least node) whose
+  // attachments contradict each other, or null; it is not moved.
+  const RigidZone* move(std::span<const Vec3> x0, std::span<Vec3> x1, double tolerance,
+                        std::span<std::uint8_t> moved);
 
   // Are these nodes all in one zone (no held one among them)?
   bool together(std::span<const Index> nodes) const;
   const std::map<Index, RigidZone>& zones() const { return zones_; }
   Index node_count() const;
-  int inexact() const { return inexact_; }  // motions that turned by more than momentum-keeping motions can
+  // motions that turned by more than momentum-keeping motions can
+  int inexact() const { return inexact_; }
   bool contains(Index node) const { return zone_of_.contains(node); }
   // The zone that a node is in, or null.
   const RigidZone* zone_of(Index node) const;
@@ -59,7 +67,8 @@ class RigidZones {
  private:
   Index zone_with(Index node);
   Index merge(Index a, Index b);
-  bool move(RigidZone& zone, std::span<const Vec3> x0, std::span<Vec3> x1, double tolerance, std::span<std::uint8_t> moved);
+  bool move(RigidZone& zone, std::span<const Vec3> x0, std::span<Vec3> x1, double tolerance,
+            std::span<std::uint8_t> moved);
 
   std::span<const double> mass_;
   std::span<const std::uint8_t> held_;

@@ -16,7 +16,8 @@ Pose between(const KeyFrame& a, const KeyFrame& b, double time) {
 }
 
 Pose keyed_pose(const std::vector<KeyFrame>& frames, double time) {
-  const auto after = std::upper_bound(frames.begin(), frames.end(), time, [](double t, const KeyFrame& f) { return t < f.time; });
+  const auto after = std::upper_bound(frames.begin(), frames.end(), time,
+                                      [](double t, const KeyFrame& f) { return t < f.time; });
   if (after == frames.begin()) return frames.front().pose;
   if (after == frames.end()) return frames.back().pose;
   return between(*(after - 1), *after, time);
@@ -28,7 +29,8 @@ SurfacePoint sphere_surface(double radius, const Vec3& p) {
 }
 
 SurfacePoint box_surface(const Vec3& size, const Vec3& p) {
-  const Vec3 beyond = p.cwiseAbs() - 0.5 * size;  // positive where p lies outside the slab of that axis
+  // positive where p lies outside the slab of that axis
+  const Vec3 beyond = p.cwiseAbs() - 0.5 * size;
   const Vec3 outside = beyond.cwiseMax(0.0);
   const double distance = outside.norm();
   if (distance > 0.0) {
@@ -52,7 +54,8 @@ SurfacePoint cylinder_surface(double radius, double height, const Vec3& p) {
     const double distance = std::hypot(beyond_side, beyond_cap);
     return {distance, (beyond_side * radial + beyond_cap * axial) / distance};
   }
-  return beyond_side > beyond_cap ? SurfacePoint{beyond_side, radial} : SurfacePoint{beyond_cap, axial};
+  return beyond_side > beyond_cap ? SurfacePoint{beyond_side, radial}
+                                  : SurfacePoint{beyond_cap, axial};
 }
 
 }  // namespace
@@ -62,7 +65,8 @@ Pose Solid::pose(double time) const {
   Pose moved = initial;
   moved.translation += time * velocity;
   const double speed = angular_velocity.norm();
-  if (speed > 0.0) moved.rotation = Eigen::AngleAxisd(speed * time, angular_velocity / speed) * initial.rotation;
+  if (speed > 0.0)
+    moved.rotation = Eigen::AngleAxisd(speed * time, angular_velocity / speed) * initial.rotation;
   return moved;
 }
 

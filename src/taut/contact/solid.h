@@ -6,7 +6,8 @@
 //                  plane     the half space z <= 0: normal +z
 //                  cylinder  axis z, |z| <= height/2, `radius`, flat caps
 //                  box       |x| <= size.x/2, |y| <= size.y/2, |z| <= size.z/2
-// Units: m, s, rad. `thickness` (m) is added outside the surface; `friction` is Coulomb's μ (static and kinetic alike), no unit.
+// Units: m, s, rad. `thickness` (m) is added outside the surface; `friction` is Coulomb's μ (static
+// and kinetic alike), no unit.
 
 #include <Eigen/Geometry>
 #include <filesystem>
@@ -31,7 +32,8 @@ struct KeyFrame {
   bool operator==(const KeyFrame&) const = default;
 };
 
-// mesh: a triangle mesh, of which closest_surface knows nothing; contact with it is that of surfaces (contact/cloth_contact.h).
+// mesh: a triangle mesh, of which closest_surface knows nothing; contact with it is that of
+// surfaces (contact/cloth_contact.h).
 enum class SolidShape { sphere, plane, cylinder, box, mesh };
 
 struct Solid {
@@ -42,17 +44,18 @@ struct Solid {
   Vec3 size = Vec3::Ones();
   double friction = 0.0;
   double thickness = 0.0;
-  // Of a mesh: OBJ, PLY or USD file, in the last which prim; its lengths' scale and upward axis; and where it deforms, a file of positions
-  // (io/motion_file.h), samples a second.
+  // Of a mesh: OBJ, PLY or USD file, in the last which prim; its lengths' scale and upward axis;
+  // and where it deforms, a file of positions (io/motion_file.h), samples a second.
   std::filesystem::path mesh, motion;
   std::string prim;
   double scale = 1.0;
   bool y_up = false;
   double motion_rate = 24.0;
 
-  // Motion: between key frames positions are linear and rotations spherically linear in time; before the first and after the last the pose
-  // is held. With no key frame the pose is `initial` moved by the constant `velocity` (m/s) and turned by `angular_velocity` (rad/s, world
-  // axes, about the solid's own origin).
+  // Motion: between key frames positions are linear and rotations spherically linear in time;
+  // before the first and after the last the pose is held. With no key frame the pose is `initial`
+  // moved by the constant `velocity` (m/s) and turned by `angular_velocity` (rad/s, world axes,
+  // about the solid's own origin).
   std::vector<KeyFrame> key_frames;
   Pose initial;
   Vec3 velocity = Vec3::Zero();
@@ -62,9 +65,9 @@ struct Solid {
   bool operator==(const Solid&) const = default;
 };
 
-// Signed distance (m, negative inside, thickness not counted) from a point in local coordinates, and the outward unit normal there. At
-// points with no unique normal (a sphere's centre, a box's edges from inside) one of the nearest is returned, always finite and of
-// length 1.
+// Signed distance (m, negative inside, thickness not counted) from a point in local coordinates,
+// and the outward unit normal there. At points with no unique normal (a sphere's centre, a box's
+// edges from inside) one of the nearest is returned, always finite and of length 1.
 struct SurfacePoint {
   double distance = 0.0;
   Vec3 normal = Vec3::UnitZ();

@@ -39,17 +39,22 @@ void measure(std::span<const Vec3> before, std::span<const Vec3> after, Untangle
 
 std::string why_not(const UntangleReport& report, double least_excess, double most_excess) {
   if (!report.left.empty())
-    return fmt::format("of {} intersections {} are left after {} passes, whichever way they were drawn apart", report.intersections_before,
-                       report.left.size(), report.passes);
+    return fmt::format(
+        "of {} intersections {} are left after {} passes, whichever way they were drawn apart",
+        report.intersections_before, report.left.size(), report.passes);
   if (least_excess <= most_excess)
-    return fmt::format("{} intersections were drawn apart, but layers were left without a gap", report.intersections_before);
-  return fmt::format("{} intersections, with {} nodes inside solids, can only be drawn apart by stretching or squeezing edges by {:.1f} %",
-                     report.intersections_before, report.inside_solids_before, 100 * least_excess);
+    return fmt::format("{} intersections were drawn apart, but layers were left without a gap",
+                       report.intersections_before);
+  return fmt::format(
+      "{} intersections, with {} nodes inside solids, can only be drawn apart by stretching or "
+      "squeezing edges by {:.1f} %",
+      report.intersections_before, report.inside_solids_before, 100 * least_excess);
 }
 
 }  // namespace
 
-UntangleReport untangle(const UntangleInput& input, std::span<Vec3> x, const UntangleOptions& options) {
+UntangleReport untangle(const UntangleInput& input, std::span<Vec3> x,
+                        const UntangleOptions& options) {
   UntangleReport report;
   const std::vector<Vec3> start(x.begin(), x.end());
   BroadPhase broad_phase(input.surface, start);
@@ -59,24 +64,30 @@ UntangleReport untangle(const UntangleInput& input, std::span<Vec3> x, const Unt
   if (report.intersections_before == 0 && report.inside_solids_before == 0) return report;
 
   const EdgeFaces faces(input.surface);
-  const std::vector<LengthRange> ranges = length_ranges(input.surface, start, input.rest, length_slack);
+  const std::vector<LengthRange> ranges =
+      length_ranges(input.surface, start, input.rest, length_slack);
   const double edge = mean_edge(input);
-  const SeparationWay ways[] = {{0.05 * edge, true}, {0.05 * edge, false}, {0.2 * edge, true}, {0.02 * edge, true}};
+  const SeparationWay ways[] = {
+      {0.05 * edge, true}, {0.05 * edge, false}, {0.2 * edge, true}, {0.02 * edge, true}};
   double least_excess = 0.0;
   bool found_one = false;
   for (const SeparationWay& way : ways) {
     std::vector<Vec3> trial = start;
-    const SeparationResult separated = separate(input, faces, ranges, broad_phase, way, options, trial);
+    const SeparationResult separated =
+        separate(input, faces, ranges, broad_phase, way, options, trial);
     report.passes += separated.passes;
-    if (report.attempts++ == 0 || separated.left.size() < report.left.size()) report.left = separated.left;
+    if (report.attempts++ == 0 || separated.left.size() < report.left.size())
+      report.left = separated.left;
     if (!separated.left.empty()) continue;
     const SettledQuality quality = settle(input, ranges, options, trial, report.rounds);
-    if (!find_intersections(broad_phase, trial).empty()) continue;  // cannot be; what is handed on is checked all the same
+    // cannot be; what is handed on is checked all the same
+    if (!find_intersections(broad_phase, trial).empty()) continue;
     least_excess = found_one ? std::min(least_excess, quality.excess) : quality.excess;
     found_one = true;
     if (quality.excess > options.most_excess || quality.gap <= 0.0) continue;
     report.gap = quality.gap;
-    const double deep = std::max(input.contact.touch_tolerance, deep_share * input.contact.thickness);
+    const double deep =
+        std::max(input.contact.touch_tolerance, deep_share * input.contact.thickness);
     report.inside_solids_after = count_inside_solids(input, trial, deep);
     report.stretch_after = worst_stretch(input.surface, input.rest, trial);
     measure(start, trial, report);

@@ -1,17 +1,23 @@
 #pragma once
-// Draws cloth that intersects itself, other cloth or solids apart, from positions only: no history, no velocities.
+// Draws cloth that intersects itself, other cloth or solids apart, from positions only: no history,
+// no velocities.
 //
-//   1  separate  passes until the exact check (intersection.h) finds nothing: nodes at a contour move down the gradient of its length
-//                (contour_gradient.h), whole spots go back the way they came (contour_regions.h), nodes inside analytic solids go to the
-//                nearest point of the surface, and the edges' lengths are projected back (edge_lengths.h)
-//   2  settle    free of intersections, it is kept so: rounds of ClothContact::resolve (cloth_contact.h) without friction push layers
-//                to their thickness apart and restore lengths, each on a way that is proved free
+//   1  separate  passes until the exact check (intersection.h) finds nothing: nodes at a contour
+//                move down the gradient of its length (contour_gradient.h), whole spots go back the
+//                way they came (contour_regions.h), nodes inside analytic solids go to the nearest
+//                point of the surface, and the edges' lengths are projected back (edge_lengths.h)
+//   2  settle    free of intersections, it is kept so: rounds of ClothContact::resolve
+//                (cloth_contact.h) without friction push layers to their thickness apart and
+//                restore lengths, each on a way that is proved free
 //
-// Separation may end in a minimum that is not zero: a ring that another cloth passes through, two sheets crossed from border to border,
-// cloth inside a closed mesh. Several ways of stepping are tried from the same start, each up to `most_passes` passes. What cannot be
-// repaired with edges at most `most_excess` outside the range between what they are and their rest length is given back as it was.
+// Separation may end in a minimum that is not zero: a ring that another cloth passes through, two
+// sheets crossed from border to border, cloth inside a closed mesh. Several ways of stepping are
+// tried from the same start, each up to `most_passes` passes. What cannot be repaired with edges at
+// most `most_excess` outside the range between what they are and their rest length is given back as
+// it was.
 //
-// Deterministic: the same bits for any number of threads. Time: a pass costs one exact check and a few loops over edges.
+// Deterministic: the same bits for any number of threads. Time: a pass costs one exact check and a
+// few loops over edges.
 
 #include "taut/base/status.h"
 #include "taut/contact/cloth_contact.h"
@@ -20,8 +26,9 @@
 namespace taut {
 
 struct UntangleOptions {
-  int most_passes = 400;      // of each way of stepping
-  int patience = 100;         // passes without fewer intersections than ever before, after which it is given up
+  int most_passes = 400;  // of each way of stepping
+  // passes without fewer intersections than ever before, after which it is given up
+  int patience = 100;
   int most_rounds = 80;       // of settling
   double most_excess = 0.05;  // share of an edge's length
 };
@@ -32,24 +39,30 @@ struct UntangleInput {
   std::span<const double> mass;        // kg, one a vertex
   std::span<const std::uint8_t> held;  // one a vertex, not 0: stays (pins, solids)
   std::span<const double> rest;        // m, rest length of each edge
-  std::span<const Solid> solids;       // as they stand at time 0; meshes among them are part of the surface
-  ContactOptions contact;              // thickness > 0
+  // as they stand at time 0; meshes among them are part of the surface
+  std::span<const Solid> solids;
+  ContactOptions contact;  // thickness > 0
 };
 
 struct UntangleReport {
-  Status status;                                     // not ok: nothing was moved, and the message says why
-  Index intersections_before = 0;                    // pairs of an edge and a triangle
-  Index inside_solids_before = 0;                    // nodes inside analytic solids, beyond their thickness or contact.touch_tolerance
-  Index inside_solids_after = 0;                     // the same, and deeper than a twentieth of contact.thickness
+  // not ok: nothing was moved, and the message says why
+  Status status;
+  Index intersections_before = 0;  // pairs of an edge and a triangle
+  // nodes inside analytic solids, beyond their thickness or contact.touch_tolerance
+  Index inside_solids_before = 0;
+  // the same, and deeper than a twentieth of contact.thickness
+  Index inside_solids_after = 0;
   int attempts = 0, passes = 0, rounds = 0;          // of all attempts; of settling
   Index moved = 0;                                   // nodes
   double largest = 0.0, mean = 0.0;                  // m: displacements; mean of the moved nodes
   double stretch_before = 0.0, stretch_after = 0.0;  // the largest |L / rest - 1| of all edges
-  double gap = 0.0;                // m: least distance of two features within the thickness afterwards, at most the thickness
+  // m: least distance of two features within the thickness afterwards, at most the thickness
+  double gap = 0.0;
   std::vector<Intersection> left;  // not ok: those of the best attempt
 };
 
 // x: m, one a vertex. Changed only if there was something to repair and the status is ok.
-UntangleReport untangle(const UntangleInput& input, std::span<Vec3> x, const UntangleOptions& options = {});
+UntangleReport untangle(const UntangleInput& input, std::span<Vec3> x,
+                        const UntangleOptions& options = {});
 
 }  // namespace taut

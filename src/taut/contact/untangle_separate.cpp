@@ -10,7 +10,8 @@ namespace taut {
 namespace {
 
 constexpr int length_iterations = 6;
-// Gradients this small (no unit) get less than a whole step: a smooth contour's is its curvature, and its sign is noise.
+// Gradients this small (no unit) get less than a whole step: a smooth contour's is its curvature,
+// and its sign is noise.
 constexpr double small_gradient = 0.3;
 
 // What nodes are asked to do by several pairs: the mean.
@@ -25,30 +26,37 @@ struct Field {
 };
 
 // Moves the edge by d against the triangle, by the least change of the free nodes.
-void add_pair(const ContourEnd& end, const Vec3& d, std::span<const std::uint8_t> held, Field& field) {
+void add_pair(const ContourEnd& end, const Vec3& d, std::span<const std::uint8_t> held,
+              Field& field) {
   double compliance = 0.0;
   for (int k = 0; k < 5; ++k) compliance += held[end.node[k]] ? 0.0 : end.weight[k] * end.weight[k];
   if (compliance < 1e-6) return;
   for (int k = 0; k < 5; ++k)
-    if (!held[end.node[k]] && end.weight[k] != 0.0) field.add(end.node[k], (end.weight[k] / compliance) * d);
+    if (!held[end.node[k]] && end.weight[k] != 0.0)
+      field.add(end.node[k], (end.weight[k] / compliance) * d);
 }
 
-void add_gradients(std::span<const ContourEnd> ends, double step, std::span<const std::uint8_t> held, Field& field) {
+void add_gradients(std::span<const ContourEnd> ends, double step,
+                   std::span<const std::uint8_t> held, Field& field) {
   for (const ContourEnd& end : ends) {
     const Vec3& g = end.gradient;
-    add_pair(end, (step / std::sqrt(g.squaredNorm() + small_gradient * small_gradient)) * g, held, field);
+    add_pair(end, (step / std::sqrt(g.squaredNorm() + small_gradient * small_gradient)) * g, held,
+             field);
   }
 }
 
-// At their rims, which also moves what they have gone through, and where a spot is a solid's, only that.
-void add_spots(std::span<const ContourEnd> ends, const ContourRegions& regions, double step, std::span<const std::uint8_t> held,
-               Field& field) {
+// At their rims, which also moves what they have gone through, and where a spot is a solid's, only
+// that.
+void add_spots(std::span<const ContourEnd> ends, const ContourRegions& regions, double step,
+               std::span<const std::uint8_t> held, Field& field) {
   for (const ContourEnd& end : ends)
     for (int k = 0; k < 2; ++k)
-      if (const Vec3& way = regions.way[regions.region[end.node[k]]]; way != Vec3::Zero()) add_pair(end, step * way, held, field);
+      if (const Vec3& way = regions.way[regions.region[end.node[k]]]; way != Vec3::Zero())
+        add_pair(end, step * way, held, field);
 }
 
-void move_spots(const ContourRegions& regions, double step, std::span<const std::uint8_t> held, std::span<Vec3> x) {
+void move_spots(const ContourRegions& regions, double step, std::span<const std::uint8_t> held,
+                std::span<Vec3> x) {
   for (std::size_t v = 0; v < x.size(); ++v)
     if (!held[v]) x[v] += 0.5 * step * regions.way[regions.region[v]];
 }
@@ -82,8 +90,10 @@ Index count_inside_solids(const UntangleInput& input, std::span<const Vec3> x, d
   return push_out_of_solids(input, copy, tolerance);
 }
 
-SeparationResult separate(const UntangleInput& input, const EdgeFaces& faces, std::span<const LengthRange> ranges, BroadPhase& broad_phase,
-                          const SeparationWay& way, const UntangleOptions& options, std::span<Vec3> x) {
+SeparationResult separate(const UntangleInput& input, const EdgeFaces& faces,
+                          std::span<const LengthRange> ranges, BroadPhase& broad_phase,
+                          const SeparationWay& way, const UntangleOptions& options,
+                          std::span<Vec3> x) {
   SeparationResult result;
   int since_best = 0;
   for (;; ++result.passes) {
@@ -93,7 +103,8 @@ SeparationResult separate(const UntangleInput& input, const EdgeFaces& faces, st
       result.left = found;
       since_best = 0;
     }
-    if (found.empty() || result.passes == options.most_passes || ++since_best > options.patience) return result;
+    if (found.empty() || result.passes == options.most_passes || ++since_best > options.patience)
+      return result;
     std::vector<ContourEnd> ends;
     for (const Intersection& at : found) ends.push_back(contour_end(input.surface, faces, at, x));
     const ContourRegions regions = contour_regions(input.surface, found, ends);

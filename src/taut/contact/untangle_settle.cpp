@@ -23,14 +23,18 @@ std::vector<Solid> still(std::span<const Solid> solids) {
 class Settling {
  public:
   Settling(const UntangleInput& input, std::span<const LengthRange> ranges, std::span<const Vec3> x)
-      : input_(input), ranges_(ranges), contact_(input.surface, smooth(input.bodies), x, masses(input.mass), options(input.contact)) {
+      : input_(input),
+        ranges_(ranges),
+        contact_(input.surface, smooth(input.bodies), x, masses(input.mass),
+                 options(input.contact)) {
     Index nodes = 0;
     while (nodes < input.surface.vertices && !input.surface.is_solid[nodes]) ++nodes;
     pins_.reset(nodes);
     for (Index i = 0; i < nodes; ++i)
       if (input.held[i]) pins_.fix(i, Vec3::Zero());
     solids_ = std::make_unique<SolidContact>(still(input.solids), nodes, input.contact);
-    for (Index v = 0; v < input.surface.vertices; ++v) inverse_mass_.push_back(input.held[v] ? 0.0 : 1.0 / input.mass[v]);
+    for (Index v = 0; v < input.surface.vertices; ++v)
+      inverse_mass_.push_back(input.held[v] ? 0.0 : 1.0 / input.mass[v]);
   }
 
   // False: the round failed, and x is as before.
@@ -39,8 +43,10 @@ class Settling {
     std::vector<Vec3> end(x.begin(), x.end());
     project_lengths(input_.surface, ranges_, input_.held, end, length_iterations);
     const auto nodes = static_cast<std::size_t>(pins_.nodes());
-    solids_->begin_step(0.0, 1.0, std::span<const Vec3>(x).first(nodes), std::span<const Vec3>(end).first(nodes), pins_);
-    if (!contact_.resolve({x, x, inverse_mass_, input_.held, solids_.get(), 1.0, {}}, end).ok()) return false;
+    solids_->begin_step(0.0, 1.0, std::span<const Vec3>(x).first(nodes),
+                        std::span<const Vec3>(end).first(nodes), pins_);
+    if (!contact_.resolve({x, x, inverse_mass_, input_.held, solids_.get(), 1.0, {}}, end).ok())
+      return false;
     std::ranges::copy(end, x.begin());
     return true;
   }
@@ -49,7 +55,8 @@ class Settling {
   double gap(std::span<const Vec3> x) {
     const double thickness = input_.contact.thickness;
     double least = thickness;
-    for (const NearPair& near : contact_.search().near(x, x, thickness, [&](const CollisionPair&) { return thickness; }))
+    for (const NearPair& near :
+         contact_.search().near(x, x, thickness, [&](const CollisionPair&) { return thickness; }))
       least = std::min(least, near.proximity.distance);
     return least;
   }
@@ -66,7 +73,9 @@ class Settling {
     for (CollisionBody& body : result) body.friction = 0.0;
     return result;
   }
-  static std::vector<double> masses(std::span<const double> mass) { return {mass.begin(), mass.end()}; }
+  static std::vector<double> masses(std::span<const double> mass) {
+    return {mass.begin(), mass.end()};
+  }
 
   const UntangleInput& input_;
   std::span<const LengthRange> ranges_;
@@ -78,14 +87,15 @@ class Settling {
 
 }  // namespace
 
-SettledQuality settle(const UntangleInput& input, std::span<const LengthRange> ranges, const UntangleOptions& options, std::span<Vec3> x,
-                      int& rounds) {
+SettledQuality settle(const UntangleInput& input, std::span<const LengthRange> ranges,
+                      const UntangleOptions& options, std::span<Vec3> x, int& rounds) {
   constexpr double enough_gap = 0.5;  // of the thickness
   constexpr double little_excess = 2e-3;
   Settling settling(input, ranges, x);
   SettledQuality quality{settling.gap(x), worst_excess(input.surface, ranges, x)};
   for (rounds = 0; rounds < options.most_rounds; ++rounds) {
-    if (quality.gap >= enough_gap * input.contact.thickness && quality.excess <= little_excess) break;
+    if (quality.gap >= enough_gap * input.contact.thickness && quality.excess <= little_excess)
+      break;
     if (!settling.round(x)) break;
     quality = {settling.gap(x), worst_excess(input.surface, ranges, x)};
   }

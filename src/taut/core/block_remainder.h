@@ -1,25 +1,33 @@
 #pragma once
-// What a preconditioner made of some of a matrix's blocks leaves out, where it has the others lumped into its diagonal (BlocksOutside in
-// linalg/block_cholesky.h):
+// What a preconditioner made of some of a matrix's blocks leaves out, where it has the others
+// lumped into its diagonal (BlocksOutside in linalg/block_cholesky.h):
 //
-//   A = P + E       E: the blocks outside a mask, and on the diagonal what makes their rows sum to zero:  E c = Σ_j A_ij (c_j - c_i)
+//   A = P + E       E: the blocks outside a mask, and on the diagonal what makes their rows sum to
+//   zero:  E c = Σ_j A_ij (c_j - c_i)
 //
-// or, where parallelograms stand in for some of these blocks (linalg/parallelogram.h), for corner a, and likewise for the others,
+// or, where parallelograms stand in for some of these blocks (linalg/parallelogram.h), for corner
+// a, and likewise for the others,
 //
-//   E c = Σ_j A_ij (c_j - c_i) over the blocks that nothing stands in for  +  Σ A_ac (c_a - c_b + c_c - c_d)
+//   E c = Σ_j A_ij (c_j - c_i) over the blocks that nothing stands in for  +  Σ A_ac (c_a - c_b +
+//   c_c - c_d)
 
-// and with it conjugate gradients' product without reading A. For the direction c = z + β c', z = P⁻¹ r, of a method preconditioned by P
-// itself, P c is known (Eisenstat 1981, SIAM J. Sci. Stat. Comput. 2, had the same idea for SSOR):
+// and with it conjugate gradients' product without reading A. For the direction c = z + β c', z =
+// P⁻¹ r, of a method preconditioned by P itself, P c is known (Eisenstat 1981, SIAM J. Sci. Stat.
+// Comput. 2, had the same idea for SSOR):
 //
 //   p = P c = r + β p'        q = A c = p + E c        cᵀq
 //
-// p is as exact as P⁻¹ was applied: in single precision that leaves a rounding error which only a residual from A itself removes. So the
-// blocks are kept in single precision too, which adds less than that: their relative error u acts on differences, |δ(E c)| in the norm of M⁻¹
-// is at most some u sqrt(ρ Σ_ij |A_ij| |c_j - c_i|²), next to nothing where c is smooth. Sums are in double precision.
+// p is as exact as P⁻¹ was applied: in single precision that leaves a rounding error which only a
+// residual from A itself removes. So the blocks are kept in single precision too, which adds less
+// than that: their relative error u acts on differences, |δ(E c)| in the norm of M⁻¹ is at most
+// some u sqrt(ρ Σ_ij |A_ij| |c_j - c_i|²), next to nothing where c is smooth. Sums are in double
+// precision.
 //
-// 3x3 blocks, each of them symmetric, as springs' are: so each is kept once, and multiplied once for all its nodes, the two of a spring or the
-// four of a parallelogram. Rows are taken in batches, each with all that acts on one of them: what acts on rows of several is multiplied
-// in each. With constraints (linalg/node_basis.h), p and q hold something in constrained directions that nobody reads.
+// 3x3 blocks, each of them symmetric, as springs' are: so each is kept once, and multiplied once
+// for all its nodes, the two of a spring or the four of a parallelogram. Rows are taken in batches,
+// each with all that acts on one of them: what acts on rows of several is multiplied in each. With
+// constraints (linalg/node_basis.h), p and q hold something in constrained directions that nobody
+// reads.
 
 #include <cstdint>
 #include <memory>
@@ -33,26 +41,31 @@ namespace taut {
 
 class BlockRemainder {
  public:
-  // mask: one byte per block, 0 for those of E; not of 3x3 blocks: asserted. replaceable: what may stand in for some of them. Allocates;
-  // the rest does not.
-  void analyze(std::shared_ptr<const BlockPattern> pattern, std::span<const std::uint8_t> mask, std::span<const Parallelogram> replaceable = {});
+  // mask: one byte per block, 0 for those of E; not of 3x3 blocks: asserted. replaceable: what may
+  // stand in for some of them. Allocates; the rest does not.
+  void analyze(std::shared_ptr<const BlockPattern> pattern, std::span<const std::uint8_t> mask,
+               std::span<const Parallelogram> replaceable = {});
   // Takes the values of E from a matrix of that pattern (asserted).
   void update(const BlockCsr& a);
   // The same for its rows begin ... end-1; rows may be taken in any order and in parallel.
   void update_rows(const BlockCsr& a, Index begin, Index end);
   // Whether the parallelograms do stand in, from now on.
   void set_replaced(bool replaced) { replaced_ = replaced; }
-  // p = r + beta p, q = p + E c; returns cᵀ q. Where beta is 0, p may hold anything. Same bits for any number of threads.
-  double advance(double beta, std::span<const double> r, std::span<const double> c, std::span<double> p, std::span<double> q) const;
+  // p = r + beta p, q = p + E c; returns cᵀ q. Where beta is 0, p may hold anything. Same bits for
+  // any number of threads.
+  double advance(double beta, std::span<const double> r, std::span<const double> c,
+                 std::span<double> p, std::span<double> q) const;
   // q -= E c
   void subtract(std::span<const double> c, std::span<double> q) const;
-  // The largest sum of blocks B = -A_ij at a node, in the Frobenius norm, relative to its mass (kg): of those that are left out for good, and
-  // of the parallelograms at whose corners it is. Rounded upwards.
+  // The largest sum of blocks B = -A_ij at a node, in the Frobenius norm, relative to its mass
+  // (kg): of those that are left out for good, and of the parallelograms at whose corners it is.
+  // Rounded upwards.
   struct Ratios {
     double dropped = 0.0, replaced = 0.0;
   };
   Ratios ratios(std::span<const double> masses) const;
-  // The same in parts, which are independent of each other: the largest at the nodes of each of so many batches.
+  // The same in parts, which are independent of each other: the largest at the nodes of each of so
+  // many batches.
   Index batches() const { return static_cast<Index>(batch_.size()); }
   Ratios ratios_in(Index batch, std::span<const double> masses) const;
   static Ratios largest(std::span<const Ratios> of_batches);
@@ -84,8 +97,9 @@ class BlockRemainder {
 
   std::shared_ptr<const BlockPattern> pattern_;
   bool replaced_ = false;
-  std::vector<Index> copy_start_{0};  // per row: the blocks copied from it, those right of the diagonal ...
-  std::vector<Index> copy_;           // ... and their first columns in the row's panel of A
+  // per row: the blocks copied from it, those right of the diagonal ...
+  std::vector<Index> copy_start_{0};
+  std::vector<Index> copy_;  // ... and their first columns in the row's panel of A
   std::vector<Batch> batch_;
   std::vector<Spring> spring_;  // batch after batch, in the order of their blocks
   std::vector<Cell> cell_;

@@ -14,7 +14,8 @@ namespace taut {
 namespace {
 
 constexpr Index rows_at_once = 64;  // their blocks stay in the cache from core to core
-// Within a part, eigenvalues are looked for only where they may be larger than what has been found. Parts do not depend on the threads.
+// Within a part, eigenvalues are looked for only where they may be larger than what has been found.
+// Parts do not depend on the threads.
 constexpr Index rows_in_part = 1024;
 
 typedef double Four __attribute__((vector_size(32)));
@@ -27,9 +28,11 @@ double largest_eigenvalue(const Mat3& symmetric) {
   return std::max(0.0, eigen.eigenvalues()[2] + 1e-7 * symmetric.norm());
 }
 
-// Whether all eigenvalues of a symmetric matrix are less than `limit`: whether limit I - m is positive definite, by its minors.
+// Whether all eigenvalues of a symmetric matrix are less than `limit`: whether limit I - m is
+// positive definite, by its minors.
 TAUT_ALWAYS_INLINE bool is_below(const double (&m)[3][3], double limit) {
-  const double a = limit - m[0][0], b = -m[1][0], c = -m[2][0], d = limit - m[1][1], e = -m[2][1], f = limit - m[2][2];
+  const double a = limit - m[0][0], b = -m[1][0], c = -m[2][0], d = limit - m[1][1], e = -m[2][1],
+               f = limit - m[2][2];
   const double minor = a * d - b * b;
   return a > 0.0 && minor > 0.0 && f * minor - (a * e * e - 2.0 * b * c * e + d * c * c) > 0.0;
 }
@@ -39,18 +42,22 @@ bool has_symmetric_blocks(const BlockCsr& a, std::span<const std::uint8_t> core,
   const BlockPattern& p = *a.pattern;
   for (Index k = p.row_start[i]; k < p.row_start[i + 1]; ++k) {
     if (core[k] || k == p.diagonal[i]) continue;
-    const Eigen::Map<const Mat3, 0, Eigen::OuterStride<>> block(a.block(i, k), Eigen::OuterStride<>(p.width(i)));
-    if (!((block - block.transpose()).cwiseAbs().maxCoeff() <= 1e-9 * block.cwiseAbs().maxCoeff())) return false;
+    const Eigen::Map<const Mat3, 0, Eigen::OuterStride<>> block(a.block(i, k),
+                                                                Eigen::OuterStride<>(p.width(i)));
+    if (!((block - block.transpose()).cwiseAbs().maxCoeff() <= 1e-9 * block.cwiseAbs().maxCoeff()))
+      return false;
   }
   return true;
 }
 
 // Of rows begin ... end-1, but at least `largest`; -1: not known.
-TAUT_MULTIVERSION double largest_ratio(const BlockCsr& a, const std::uint8_t* core, Index begin, Index end, const double* masses, double largest) {
+TAUT_MULTIVERSION double largest_ratio(const BlockCsr& a, const std::uint8_t* core, Index begin,
+                                       Index end, const double* masses, double largest) {
   const BlockPattern& p = *a.pattern;
   for (Index i = begin; i < end; ++i) {
     const Index width = p.width(i), last = p.row_start[i + 1] - 1;
-    Four sum[3] = {};  // -Σ of the blocks outside the core, row by row, the fourth number of each nobody's
+    // -Σ of the blocks outside the core, row by row, the fourth number of each nobody's
+    Four sum[3] = {};
     bool are_symmetric = true, is_empty = true;
     for (Index k = p.row_start[i]; k <= last; ++k) {
       if (core[k] || k == p.diagonal[i]) continue;
@@ -58,12 +65,15 @@ TAUT_MULTIVERSION double largest_ratio(const BlockCsr& a, const std::uint8_t* co
       const double *second = block + width, *third = second + width;
       is_empty = false;
       are_symmetric &= (block[1] == second[0]) & (block[2] == third[0]) & (second[2] == third[1]);
-      for (Index r = 0; r < 3; ++r)  // nothing is read behind a row's last block: it may be the matrix's last
-        sum[r] -= k < last ? Four(*reinterpret_cast<const FourAnywhere*>(block + r * width))
-                           : Four{block[r * width], block[r * width + 1], block[r * width + 2], 0.0};
+      // nothing is read behind a row's last block: it may be the matrix's last
+      for (Index r = 0; r < 3; ++r)
+        sum[r] -= k < last
+                      ? Four(*reinterpret_cast<const FourAnywhere*>(block + r * width))
+                      : Four{block[r * width], block[r * width + 1], block[r * width + 2], 0.0};
     }
     if (is_empty) continue;
-    if (!are_symmetric && !has_symmetric_blocks(a, {core, static_cast<std::size_t>(p.blocks())}, i)) return -1.0;
+    if (!are_symmetric && !has_symmetric_blocks(a, {core, static_cast<std::size_t>(p.blocks())}, i))
+      return -1.0;
     double symmetric[3][3];
     for (Index r = 0; r < 3; ++r)
       for (Index c = 0; c < 3; ++c) symmetric[r][c] = 0.5 * (sum[r][c] + sum[c][r]);
@@ -76,7 +86,9 @@ TAUT_MULTIVERSION double largest_ratio(const BlockCsr& a, const std::uint8_t* co
 
 }  // namespace
 
-std::vector<double> remainder_ratios(const BlockCsr& a, std::span<const std::span<const std::uint8_t>> cores, std::span<const double> masses) {
+std::vector<double> remainder_ratios(const BlockCsr& a,
+                                     std::span<const std::span<const std::uint8_t>> cores,
+                                     std::span<const double> masses) {
   assert(a.pattern->uniform_dim == 3 && static_cast<Index>(masses.size()) == a.rows());
   const Index rows = a.rows(), parts = (rows + rows_in_part - 1) / rows_in_part;
   std::vector<double> largest(static_cast<std::size_t>(parts) * cores.size(), 0.0);  // part by part
@@ -87,7 +99,10 @@ std::vector<double> remainder_ratios(const BlockCsr& a, std::span<const std::spa
       for (Index begin = rows_in_part * part; begin < end; begin += rows_at_once)
         for (std::size_t c = 0; c < cores.size(); ++c) {
           assert(static_cast<Index>(cores[c].size()) == a.pattern->blocks());
-          if (of_part[c] >= 0.0) of_part[c] = largest_ratio(a, cores[c].data(), begin, std::min(end, begin + rows_at_once), masses.data(), of_part[c]);
+          if (of_part[c] >= 0.0)
+            of_part[c] =
+                largest_ratio(a, cores[c].data(), begin, std::min(end, begin + rows_at_once),
+                              masses.data(), of_part[c]);
         }
     }
   });
@@ -99,7 +114,8 @@ std::vector<double> remainder_ratios(const BlockCsr& a, std::span<const std::spa
   return result;
 }
 
-double remainder_ratio(const BlockCsr& a, std::span<const std::uint8_t> core, std::span<const double> masses) {
+double remainder_ratio(const BlockCsr& a, std::span<const std::uint8_t> core,
+                       std::span<const double> masses) {
   return remainder_ratios(a, {&core, 1}, masses)[0];
 }
 
@@ -116,7 +132,8 @@ double block_diagonal_condition(const BlockCsr& a) {
           sum += entry;
           if (k == p.diagonal[i]) diagonal += entry;
         }
-      ratio[static_cast<std::size_t>(i)] = sum > 1e-14 * diagonal ? diagonal / sum : std::numeric_limits<double>::infinity();
+      ratio[static_cast<std::size_t>(i)] =
+          sum > 1e-14 * diagonal ? diagonal / sum : std::numeric_limits<double>::infinity();
     }
   });
   return 2.0 * (ratio.empty() ? 1.0 : *std::ranges::max_element(ratio));
@@ -130,7 +147,8 @@ int iteration_bound(double condition, double start_value, double tolerance) {
   if (start_value <= tolerance) return 0;
   const double root = std::sqrt(condition);
   constexpr double most = 1e9;  // also where the condition is infinite
-  return static_cast<int>(std::clamp(std::ceil(0.5 * root * std::log(2.0 * root * start_value / tolerance)), 1.0, most));
+  return static_cast<int>(std::clamp(
+      std::ceil(0.5 * root * std::log(2.0 * root * start_value / tolerance)), 1.0, most));
 }
 
 }  // namespace taut

@@ -12,22 +12,25 @@ struct Link {
   double weight, share;      // c_ij, and relative to the lighter node
 };
 
-std::vector<Link> links_of(const BlockPattern& pattern, std::span<const double> bounds, std::span<const double> masses) {
+std::vector<Link> links_of(const BlockPattern& pattern, std::span<const double> bounds,
+                           std::span<const double> masses) {
   std::vector<Link> links;
   links.reserve(static_cast<std::size_t>(pattern.blocks() - pattern.rows()) / 2);
   for (Index i = 0; i < pattern.rows(); ++i)
     for (Index k = pattern.diagonal[i] + 1; k < pattern.row_start[i + 1]; ++k) {
       const Index j = pattern.column[k];
-      links.push_back({i, j, k, pattern.find(j, i), bounds[k], bounds[k] / std::min(masses[i], masses[j])});
+      links.push_back(
+          {i, j, k, pattern.find(j, i), bounds[k], bounds[k] / std::min(masses[i], masses[j])});
     }
   return links;
 }
 
 }  // namespace
 
-std::vector<std::uint8_t> choose_core(const BlockPattern& pattern, std::span<const double> bounds, std::span<const double> masses,
-                                      double target_rho) {
-  assert(static_cast<Index>(bounds.size()) == pattern.blocks() && static_cast<Index>(masses.size()) == pattern.rows());
+std::vector<std::uint8_t> choose_core(const BlockPattern& pattern, std::span<const double> bounds,
+                                      std::span<const double> masses, double target_rho) {
+  assert(static_cast<Index>(bounds.size()) == pattern.blocks() &&
+         static_cast<Index>(masses.size()) == pattern.rows());
   std::vector<Link> links = links_of(pattern, bounds, masses);
   // Among equals, node order.
   std::ranges::stable_sort(links, {}, &Link::share);
@@ -42,7 +45,8 @@ std::vector<std::uint8_t> choose_core(const BlockPattern& pattern, std::span<con
   return core;
 }
 
-double stiffness_ratio(const BlockPattern& pattern, std::span<const double> bounds, std::span<const double> masses) {
+double stiffness_ratio(const BlockPattern& pattern, std::span<const double> bounds,
+                       std::span<const double> masses) {
   double largest = 0.0;
   for (Index i = 0; i < pattern.rows(); ++i) {
     double sum = 0.0;

@@ -12,7 +12,9 @@ namespace {
 // A sink that ignores what it is not made for.
 struct MatrixSink : ConnectionSink {
   std::function<void(Index, Index, Index, int, bool)> on_matrix;
-  void matrix(Index id, Index row, Index column, int sign, bool transposed) override { on_matrix(id, row, column, sign, transposed); }
+  void matrix(Index id, Index row, Index column, int sign, bool transposed) override {
+    on_matrix(id, row, column, sign, transposed);
+  }
   void vector(Index, Index, int) override {}
 };
 
@@ -22,7 +24,8 @@ struct VectorSink : ConnectionSink {
   void vector(Index id, Index node, int sign) override { on_vector(id, node, sign); }
 };
 
-// Runs `visit(add)` twice: once to count, once to place; `add(slot, entry)` appends entry to the slot's list, in order of calls.
+// Runs `visit(add)` twice: once to count, once to place; `add(slot, entry)` appends entry to the
+// slot's list, in order of calls.
 template <class Entry, class Visit>
 void build_lists(Index slots, std::vector<Index>& start, std::vector<Entry>& list, Visit visit) {
   start.assign(static_cast<std::size_t>(slots) + 1, 0);
@@ -53,7 +56,9 @@ Assembler::Assembler(Index nodes, std::vector<const ForceModel*> models, std::ve
 void Assembler::build_pattern(Index nodes) {
   std::vector<std::vector<Index>> columns(static_cast<std::size_t>(nodes));
   MatrixSink sink;
-  sink.on_matrix = [&](Index, Index row, Index column, int, bool) { columns[row].push_back(column); };
+  sink.on_matrix = [&](Index, Index row, Index column, int, bool) {
+    columns[row].push_back(column);
+  };
   for (std::size_t m = 0; m < models_.size(); ++m)
     if (implicit_[m]) models_[m]->connect(sink);
   pattern_ = make_pattern(std::move(columns), 3);
@@ -61,7 +66,8 @@ void Assembler::build_pattern(Index nodes) {
 
 void Assembler::build_gather(Index nodes) {
   const auto encode = [](Index id, int sign, bool transposed) {
-    return Contribution{(static_cast<std::uint32_t>(id) << 2) | (transposed ? 2u : 0u) | (sign < 0 ? 1u : 0u)};
+    return Contribution{(static_cast<std::uint32_t>(id) << 2) | (transposed ? 2u : 0u) |
+                        (sign < 0 ? 1u : 0u)};
   };
   build_lists<Contribution>(pattern_->blocks(), block_start_, block_list_, [&](auto add) {
     for (std::size_t m = 0; m < models_.size(); ++m) {
@@ -76,7 +82,9 @@ void Assembler::build_gather(Index nodes) {
   build_lists<Contribution>(nodes, vector_start_, vector_list_, [&](auto add) {
     for (std::size_t m = 0; m < models_.size(); ++m) {
       VectorSink sink;
-      sink.on_vector = [&](Index id, Index node, int sign) { add(node, encode(vector_base_[m] + id, sign, false)); };
+      sink.on_vector = [&](Index id, Index node, int sign) {
+        add(node, encode(vector_base_[m] + id, sign, false));
+      };
       models_[m]->connect(sink);
     }
   });
@@ -86,22 +94,27 @@ std::vector<std::uint8_t> Assembler::core_mask(ForceClass core_class) const {
   std::vector<std::uint8_t> mask(static_cast<std::size_t>(pattern_->blocks()), 0);
   for (const Index k : pattern_->diagonal) mask[k] = 1;
   MatrixSink sink;
-  sink.on_matrix = [&](Index, Index row, Index column, int, bool) { mask[pattern_->find(row, column)] = 1; };
+  sink.on_matrix = [&](Index, Index row, Index column, int, bool) {
+    mask[pattern_->find(row, column)] = 1;
+  };
   for (std::size_t m = 0; m < models_.size(); ++m)
     if (implicit_[m] && models_[m]->force_class() == core_class) models_[m]->connect(sink);
   return mask;
 }
 
 std::vector<double> Assembler::block_bounds(double matrix_stiffness, double matrix_damping) const {
-  std::vector<double> own(static_cast<std::size_t>(block_base_.back())), bounds(static_cast<std::size_t>(pattern_->blocks()), 0.0);
+  std::vector<double> own(static_cast<std::size_t>(block_base_.back())),
+      bounds(static_cast<std::size_t>(pattern_->blocks()), 0.0);
   for (std::size_t m = 0; m < models_.size(); ++m)
     if (implicit_[m])
-      models_[m]->bound_blocks(matrix_stiffness, matrix_damping,
-                               std::span(own).subspan(block_base_[m], block_base_[m + 1] - block_base_[m]));
+      models_[m]->bound_blocks(
+          matrix_stiffness, matrix_damping,
+          std::span(own).subspan(block_base_[m], block_base_[m + 1] - block_base_[m]));
   for (Index i = 0; i < pattern_->rows(); ++i)
     for (Index k = pattern_->row_start[i]; k < pattern_->row_start[i + 1]; ++k) {
       if (k == pattern_->diagonal[i]) continue;
-      for (Index c = block_start_[k]; c < block_start_[k + 1]; ++c) bounds[k] += own[block_list_[c].id()];
+      for (Index c = block_start_[k]; c < block_start_[k + 1]; ++c)
+        bounds[k] += own[block_list_[c].id()];
     }
   return bounds;
 }
@@ -135,7 +148,8 @@ void Assembler::gather_row(Index i, const Diagonal& diagonal, BlockCsr& a) const
       for (int r = 0; r < 3; ++r) sum[4 * r] += mass;
       if (!diagonal.damping.empty())
         for (int r = 0; r < 3; ++r)
-          for (int q = 0; q < 3; ++q) sum[3 * r + q] += diagonal.external * diagonal.damping[i](r, q);
+          for (int q = 0; q < 3; ++q)
+            sum[3 * r + q] += diagonal.external * diagonal.damping[i](r, q);
     }
     double* out = a.block(i, k);
     for (int r = 0; r < 3; ++r)
@@ -143,15 +157,20 @@ void Assembler::gather_row(Index i, const Diagonal& diagonal, BlockCsr& a) const
   }
 }
 
-void Assembler::assemble(std::span<const ForceRequest> requests, const Diagonal& diagonal, BlockCsr& a, std::span<Vec3> b) {
-  assert(requests.size() == models_.size() && a.pattern == pattern_ && static_cast<Index>(b.size()) == pattern_->rows());
+void Assembler::assemble(std::span<const ForceRequest> requests, const Diagonal& diagonal,
+                         BlockCsr& a, std::span<Vec3> b) {
+  assert(requests.size() == models_.size() && a.pattern == pattern_ &&
+         static_cast<Index>(b.size()) == pattern_->rows());
   for (std::size_t m = 0; m < models_.size(); ++m) {
     assert(implicit_[m] || !requests[m].wants_matrix());
-    const auto block_part = std::span(blocks_).subspan(9 * static_cast<std::size_t>(block_base_[m]),
-                                                       9 * static_cast<std::size_t>(block_base_[m + 1] - block_base_[m]));
-    const auto vector_part = std::span(vectors_).subspan(static_cast<std::size_t>(vector_base_[m]),
-                                                         static_cast<std::size_t>(vector_base_[m + 1] - vector_base_[m]));
-    // An implicit model left out of this matrix (a dump of one class) must not leave its last numbers behind.
+    const auto block_part = std::span(blocks_).subspan(
+        9 * static_cast<std::size_t>(block_base_[m]),
+        9 * static_cast<std::size_t>(block_base_[m + 1] - block_base_[m]));
+    const auto vector_part = std::span(vectors_).subspan(
+        static_cast<std::size_t>(vector_base_[m]),
+        static_cast<std::size_t>(vector_base_[m + 1] - vector_base_[m]));
+    // An implicit model left out of this matrix (a dump of one class) must not leave its last
+    // numbers behind.
     if (implicit_[m] && !requests[m].wants_matrix()) std::ranges::fill(block_part, 0.0);
     models_[m]->evaluate(requests[m], block_part, vector_part);
   }

@@ -1,12 +1,14 @@
 #pragma once
 // Puts the force models' elements together into A (3x3 blocks) and the right-hand side.
 //
-//   A_ij = sum of the matrix blocks of the elements that couple i and j  +  δ_ij (m_i mass + external * D_ext,i)
+//   A_ij = sum of the matrix blocks of the elements that couple i and j  +  δ_ij (m_i mass +
+//   external * D_ext,i)
 //   b_i  = sum of the elements' vectors
 //
-// The pattern is that of the *implicit* models (IMEX leaves shear and bend out: the "thin matrix") and is built once. Each step, elements are evaluated in
-// parallel into flat arrays and then gathered block row by block row, in the order of the models' connections: parallel, no atomics, the same bits
-// for any thread count, nothing allocated.
+// The pattern is that of the *implicit* models (IMEX leaves shear and bend out: the "thin matrix")
+// and is built once. Each step, elements are evaluated in parallel into flat arrays and then
+// gathered block row by block row, in the order of the models' connections: parallel, no atomics,
+// the same bits for any thread count, nothing allocated.
 
 #include <cstdint>
 #include <functional>
@@ -26,23 +28,26 @@ class Assembler {
   std::span<const ForceModel* const> models() const { return models_; }
   bool is_implicit(std::size_t model) const { return implicit_[model]; }
 
-  // 1 for each block of the pattern that a model of `core_class` fills, and for the diagonal (paper Section 6: A_core keeps these).
+  // 1 for each block of the pattern that a model of `core_class` fills, and for the diagonal (paper
+  // Section 6: A_core keeps these).
   std::vector<std::uint8_t> core_mask(ForceClass core_class) const;
 
-  // For each block of the pattern off the diagonal, a bound on the norm of what the elements add to it with these factors of K and D, in
-  // whatever state; 0 on the diagonal.
+  // For each block of the pattern off the diagonal, a bound on the norm of what the elements add to
+  // it with these factors of K and D, in whatever state; 0 on the diagonal.
   std::vector<double> block_bounds(double matrix_stiffness, double matrix_damping) const;
   // How many elements have a block of the mask off the diagonal.
   Index elements_in(std::span<const std::uint8_t> mask) const;
 
   struct Diagonal {
-    std::span<const double> masses;   // kg
-    double mass = 1.0;                // factor
-    std::span<const Mat3> damping;    // D_ext, or empty
-    double external = 0.0;            // factor
+    std::span<const double> masses;  // kg
+    double mass = 1.0;               // factor
+    std::span<const Mat3> damping;   // D_ext, or empty
+    double external = 0.0;           // factor
   };
-  // requests: one per model. Overwrites a (same pattern) and b (one entry per node). Explicit models must not ask for a matrix (asserted).
-  void assemble(std::span<const ForceRequest> requests, const Diagonal& diagonal, BlockCsr& a, std::span<Vec3> b);
+  // requests: one per model. Overwrites a (same pattern) and b (one entry per node). Explicit
+  // models must not ask for a matrix (asserted).
+  void assemble(std::span<const ForceRequest> requests, const Diagonal& diagonal, BlockCsr& a,
+                std::span<Vec3> b);
 
  private:
   struct Contribution {  // block or vector `id` of the flat arrays, with sign and transposition
@@ -58,8 +63,10 @@ class Assembler {
   std::vector<const ForceModel*> models_;
   std::vector<bool> implicit_;
   std::shared_ptr<const BlockPattern> pattern_;
-  std::vector<Index> block_base_, vector_base_;        // where each model's part of the flat arrays begins
-  std::vector<Index> block_start_, vector_start_;      // gather lists, per block of the pattern and per node
+  // where each model's part of the flat arrays begins
+  std::vector<Index> block_base_, vector_base_;
+  // gather lists, per block of the pattern and per node
+  std::vector<Index> block_start_, vector_start_;
   std::vector<Contribution> block_list_, vector_list_;
   std::vector<double> blocks_;
   std::vector<Vec3> vectors_;

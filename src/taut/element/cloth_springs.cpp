@@ -10,7 +10,8 @@ namespace taut {
 namespace {
 
 SpringLawKind law_of(ForceClass force_class, const SpringMaterial& m) {
-  if (force_class == ForceClass::bend) return m.bend_model == BendModel::choi_ko ? SpringLawKind::choi_ko : SpringLawKind::linear;
+  if (force_class == ForceClass::bend)
+    return m.bend_model == BendModel::choi_ko ? SpringLawKind::choi_ko : SpringLawKind::linear;
   return m.compression == Compression::linear ? SpringLawKind::linear : SpringLawKind::buckling;
 }
 
@@ -33,8 +34,8 @@ SpringParameters parameters_of(ForceClass force_class, const SpringMaterial& m) 
 
 class SpringCollector {
  public:
-  SpringCollector(ForceClass force_class, std::span<const Vec3> rest, const SpringMaterial& material, Index first_node,
-                  const std::string& cloth)
+  SpringCollector(ForceClass force_class, std::span<const Vec3> rest,
+                  const SpringMaterial& material, Index first_node, const std::string& cloth)
       : class_(force_class),
         rest_(rest),
         law_(law_of(force_class, material)),
@@ -46,14 +47,16 @@ class SpringCollector {
     SpringParameters p = parameters_;
     p.rest_length = (rest_[j] - rest_[i]).norm();
     if (!(p.rest_length > 0.0))
-      throw InputError(
-          fmt::format("cloth '{}': vertices {} and {} are joined by a {} spring but lie in the same place ({:.6g}, {:.6g}, {:.6g}); "
-                      "merge them or move them apart",
-                      cloth_, i + 1, j + 1, name_of(class_), rest_[i].x(), rest_[i].y(), rest_[i].z()));
+      throw InputError(fmt::format(
+          "cloth '{}': vertices {} and {} are joined by a {} spring but lie in the same place "
+          "({:.6g}, {:.6g}, {:.6g}); "
+          "merge them or move them apart",
+          cloth_, i + 1, j + 1, name_of(class_), rest_[i].x(), rest_[i].y(), rest_[i].z()));
     springs_.push_back({first_node_ + i, first_node_ + j, p});
   }
   void deliver_to(std::vector<std::unique_ptr<SpringModel>>& models) {
-    if (!springs_.empty()) models.push_back(std::make_unique<SpringModel>(class_, law_, std::move(springs_)));
+    if (!springs_.empty())
+      models.push_back(std::make_unique<SpringModel>(class_, law_, std::move(springs_)));
   }
 
  private:
@@ -68,10 +71,14 @@ class SpringCollector {
 
 }  // namespace
 
-std::vector<std::unique_ptr<SpringModel>> grid_springs(const GridShape& g, std::span<const Vec3> rest, const SpringMaterial& material,
-                                                       Index first_node, const std::string& cloth_name) {
+std::vector<std::unique_ptr<SpringModel>> grid_springs(const GridShape& g,
+                                                       std::span<const Vec3> rest,
+                                                       const SpringMaterial& material,
+                                                       Index first_node,
+                                                       const std::string& cloth_name) {
   SpringCollector stretch(ForceClass::stretch, rest, material, first_node, cloth_name),
-      shear(ForceClass::shear, rest, material, first_node, cloth_name), bend(ForceClass::bend, rest, material, first_node, cloth_name);
+      shear(ForceClass::shear, rest, material, first_node, cloth_name),
+      bend(ForceClass::bend, rest, material, first_node, cloth_name);
   for (Index j = 0; j < g.nv; ++j)
     for (Index i = 0; i < g.nu; ++i) {
       const bool right = i + 1 < g.nu, up = j + 1 < g.nv;
@@ -89,7 +96,9 @@ std::vector<std::unique_ptr<SpringModel>> grid_springs(const GridShape& g, std::
   return models;
 }
 
-std::vector<std::unique_ptr<SpringModel>> mesh_springs(const TriangleMesh& mesh, const SpringMaterial& material, Index first_node,
+std::vector<std::unique_ptr<SpringModel>> mesh_springs(const TriangleMesh& mesh,
+                                                       const SpringMaterial& material,
+                                                       Index first_node,
                                                        const std::string& cloth_name) {
   const Topology topology = build_topology(mesh);
   SpringCollector stretch(ForceClass::stretch, mesh.positions, material, first_node, cloth_name),

@@ -1,10 +1,15 @@
 #pragma once
-// Forces from outside the cloth: gravity, air drag and wind. They are block diagonal: each node's force depends on its own velocity only.
+// Forces from outside the cloth: gravity, air drag and wind. They are block diagonal: each node's
+// force depends on its own velocity only.
 //
-//   gravity        f_i = m_i g                                                                       g m/s²
-//   drag           f_i = -c_i (v_i - w),  D_i = c_i I                                                c_i kg/s, w the wind m/s
-//   wind pressure  each triangle of area A and unit normal n gives each of its nodes  (c A/3) n nᵀ (w - v_i),  D_i = (c A/3) n nᵀ
-//                  c kg/(m² s): a linearised pressure on the side that faces the wind; D_i is exact in v_i and positive semidefinite
+//   gravity        f_i = m_i g
+//   g m/s²
+//   drag           f_i = -c_i (v_i - w),  D_i = c_i I
+//   c_i kg/s, w the wind m/s
+//   wind pressure  each triangle of area A and unit normal n gives each of its nodes  (c A/3) n nᵀ
+//   (w - v_i),  D_i = (c A/3) n nᵀ
+//                  c kg/(m² s): a linearised pressure on the side that faces the wind; D_i is exact
+//                  in v_i and positive semidefinite
 //   wind           w(t) = W (1 + gust sin(2π f t))
 
 #include "taut/base/types.h"
@@ -13,9 +18,9 @@
 namespace taut {
 
 struct WindOptions {
-  Vec3 velocity = Vec3::Zero();   // W, m/s
-  double gust = 0.0;              // share of W
-  double gust_frequency = 1.0;    // f, Hz
+  Vec3 velocity = Vec3::Zero();  // W, m/s
+  double gust = 0.0;             // share of W
+  double gust_frequency = 1.0;   // f, Hz
   Vec3 at(double time) const;
 };
 

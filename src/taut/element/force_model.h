@@ -1,16 +1,21 @@
 #pragma once
-// A force model: many small elements of the same kind (springs now), each coupling the nodes of its stencil.
+// A force model: many small elements of the same kind (springs now), each coupling the nodes of its
+// stencil.
 //
-//   sign rule  f = -grad E,   K = -df/dx (as used: positive semidefinite),   D = -df/dv          N, N/m, N s/m
+//   sign rule  f = -grad E,   K = -df/dx (as used: positive semidefinite),   D = -df/dv          N,
+//   N/m, N s/m
 //
-// A model is asked for combinations rather than for f, K and D one by one, so that each element is visited once a step:
+// A model is asked for combinations rather than for f, K and D one by one, so that each element is
+// visited once a step:
 //
 //   matrix block   damping * D + stiffness * K
-//   vector         force * f + (K p) + (D q)              p, q: node fields chosen by the integrator
+//   vector         force * f + (K p) + (D q)              p, q: node fields chosen by the
+//                                                         integrator
 //
-// It hands out its numbers in two flat arrays; where they go in the matrix, with which sign, it says once, in `connect`. The assembler gathers them row
-// by row, which is parallel and gives the same bits for any thread count.
-// Adding a model: its header and source, one line in scene/cloth_model.cpp, one test file.
+// It hands out its numbers in two flat arrays; where they go in the matrix, with which sign, it
+// says once, in `connect`. The assembler gathers them row by row, which is parallel and gives the
+// same bits for any thread count. Adding a model: its header and source, one line in
+// scene/cloth_model.cpp, one test file.
 
 #include <span>
 #include <string>
@@ -25,13 +30,13 @@ const char* name_of(ForceClass force_class);
 
 // What the integrator wants to know of every element.
 struct ForceRequest {
-  std::span<const Vec3> x;                   // m
-  std::span<const Vec3> v;                   // m/s
-  double matrix_stiffness = 0.0;             // factor of K in the matrix
-  double matrix_damping = 0.0;               // factor of D in the matrix
-  double force = 1.0;                        // factor of f in the vector
-  std::span<const Vec3> stiffness_operand;   // p; empty: no K p
-  std::span<const Vec3> damping_operand;     // q; empty: no D q
+  std::span<const Vec3> x;                  // m
+  std::span<const Vec3> v;                  // m/s
+  double matrix_stiffness = 0.0;            // factor of K in the matrix
+  double matrix_damping = 0.0;              // factor of D in the matrix
+  double force = 1.0;                       // factor of f in the vector
+  std::span<const Vec3> stiffness_operand;  // p; empty: no K p
+  std::span<const Vec3> damping_operand;    // q; empty: no D q
   bool wants_matrix() const { return matrix_stiffness != 0.0 || matrix_damping != 0.0; }
 };
 
@@ -54,14 +59,19 @@ class ForceModel {
   virtual Index block_count() const = 0;
   virtual Index vector_count() const = 0;
   virtual void connect(ConnectionSink& sink) const = 0;
-  // blocks: 9 * block_count() doubles, left alone unless the request wants a matrix; vectors: block_count() entries. Parallel inside.
-  virtual void evaluate(const ForceRequest& request, std::span<double> blocks, std::span<Vec3> vectors) const = 0;
-  // For each block b of matrix_stiffness K + matrix_damping D: a bound on its largest eigenvalue that holds in every state (block_count()
-  // entries). The core is chosen by it, so that the choice stays while the cloth moves.
-  virtual void bound_blocks(double matrix_stiffness, double matrix_damping, std::span<double> bounds) const = 0;
+  // blocks: 9 * block_count() doubles, left alone unless the request wants a matrix; vectors:
+  // block_count() entries. Parallel inside.
+  virtual void evaluate(const ForceRequest& request, std::span<double> blocks,
+                        std::span<Vec3> vectors) const = 0;
+  // For each block b of matrix_stiffness K + matrix_damping D: a bound on its largest eigenvalue
+  // that holds in every state (block_count() entries). The core is chosen by it, so that the choice
+  // stays while the cloth moves.
+  virtual void bound_blocks(double matrix_stiffness, double matrix_damping,
+                            std::span<double> bounds) const = 0;
   // J
   virtual double energy(std::span<const Vec3> x) const = 0;
-  // Elements with no direction left (both ends in one place): they give no force and no stiffness, and are counted.
+  // Elements with no direction left (both ends in one place): they give no force and no stiffness,
+  // and are counted.
   virtual Index collapsed(std::span<const Vec3> x) const = 0;
 };
 

@@ -1,18 +1,24 @@
 #pragma once
-// The law of one spring between nodes i and j (docs/mathematics.md, 2; Provot 1995; Choi & Ko 2002):
+// The law of one spring between nodes i and j (docs/mathematics.md, 2; Provot 1995; Choi & Ko
+// 2002):
 //
 //   d = x_j - x_i,  L = |d|,  e = d/L,  L0 rest length                                        m
 //   force on i   f_i = T(L) e + k_d e eᵀ (v_j - v_i),   f_j = -f_i                            N
 //   exact        -df_i/dx_i (elastic) = T'(L) e eᵀ + T(L)/L (I - e eᵀ)                        N/m
-//   used         K_s = T' e eᵀ + max(T/L, 0) (I - e eᵀ): the transverse term of a compressed spring is dropped
+//   used         K_s = T' e eᵀ + max(T/L, 0) (I - e eᵀ): the transverse term of a compressed spring
+//                is dropped
 //   D_s = k_d e eᵀ; d(damping force)/dx is dropped. A slack spring (no force) does not damp.  N s/m
 //
 // Laws T(L), with k the stiffness:
 //   linear      T = k (L - L0)                                   both ways
-//   buckling    the same for L >= L0, nothing below              stretch and shear, Choi & Ko's type 1
-//   choi_ko     c_b (L - L0) for L >= L0; below, the beam of flexural rigidity k_b (N·m²) buckled into an arc:
-//                   sinc(u) = L/L0, κ = 2u/L0, f_b = k_b κ² / (cos u - sinc u)   (< 0, it pushes), energy ½ k_b κ² L0,
-//               replaced near L0 by the line c_b (L - L0) where f_b is the stronger push (Choi & Ko's type 2)
+//   buckling    the same for L >= L0, nothing below              stretch and shear, Choi & Ko's
+//                                                                type 1
+//   choi_ko     c_b (L - L0) for L >= L0; below, the beam of flexural rigidity k_b (N·m²) buckled
+//               into an arc:
+//                   sinc(u) = L/L0, κ = 2u/L0, f_b = k_b κ² / (cos u - sinc u)   (< 0, it pushes),
+//                   energy ½ k_b κ² L0,
+//               replaced near L0 by the line c_b (L - L0) where f_b is the stronger push (Choi &
+//               Ko's type 2)
 // A collapsed spring (L = 0) gives nothing.
 
 #include "taut/base/types.h"
@@ -21,8 +27,9 @@ namespace taut {
 
 enum class SpringLawKind { linear, buckling, choi_ko };
 
-// choi_ko: the lengths between which the beam pushes less than the line c_b (L - L0) would: in general from 0 to somewhat below L0. A line
-// with c_b L0³/k_b < 31.47 is weaker at every length (upper = 0), one between that and 4π² also near L = 0 (lower > 0).
+// choi_ko: the lengths between which the beam pushes less than the line c_b (L - L0) would: in
+// general from 0 to somewhat below L0. A line with c_b L0³/k_b < 31.47 is weaker at every length
+// (upper = 0), one between that and 4π² also near L = 0 (lower > 0).
 struct BeamRange {
   double lower = 0.0, upper = -1.0;  // m; upper negative: not known
   bool known() const { return upper >= 0.0; }
@@ -46,7 +53,8 @@ struct SpringTension {
   bool slack = true;
 };
 SpringTension spring_tension(SpringLawKind law, const SpringParameters& p, double length);
-// The largest eigenvalue of K_s at any length, N/m: k; for choi_ko the steeper of the line and the beam folded flat (L = 0), 12 π² k_b/L0³.
+// The largest eigenvalue of K_s at any length, N/m: k; for choi_ko the steeper of the line and the
+// beam folded flat (L = 0), 12 π² k_b/L0³.
 double largest_stiffness(SpringLawKind law, const SpringParameters& p);
 // ∫ T dL from the rest length, J.
 double spring_energy(SpringLawKind law, const SpringParameters& p, double length);
@@ -61,8 +69,10 @@ struct SpringResponse {
   Mat3 dropped_damping = Mat3::Zero();     // -d(damping force)/dx, dropped
   Mat3 exact_stiffness() const { return stiffness + dropped_transverse + dropped_damping; }
 };
-// The readable form, for tests, dumps and small tools; springs.cpp evaluates the same formulas in bulk.
-SpringResponse spring_response(SpringLawKind law, const SpringParameters& p, const Vec3& d, const Vec3& relative_velocity);
+// The readable form, for tests, dumps and small tools; springs.cpp evaluates the same formulas in
+// bulk.
+SpringResponse spring_response(SpringLawKind law, const SpringParameters& p, const Vec3& d,
+                               const Vec3& relative_velocity);
 
 // u in [0, π] with sin(u)/u = s, s in [0, 1]; error below 1e-14.
 double inverse_sinc(double s);

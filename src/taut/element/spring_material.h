@@ -1,16 +1,21 @@
 #pragma once
-// Material of a mass-spring cloth (Provot 1995; Choi & Ko 2002). docs/mathematics.md, 2; kernels in element/spring_law.h.
+// Material of a mass-spring cloth (Provot 1995; Choi & Ko 2002). docs/mathematics.md, 2; kernels in
+// element/spring_law.h.
 //
 //   k_stretch, k_shear  N/m a spring
-//   k_bend              N/m a spring with bend_model linear; N·m² (a flexural rigidity) with choi_ko
+//   k_bend              N/m a spring with bend_model linear; N·m² (a flexural rigidity) with
+//                       choi_ko
 //   k_damp_*            N·s/m a spring, along the spring
-//   bend_cap            c_b of Choi & Ko, N/m: slope of the line that caps the buckled force near the rest length; 0 means k_stretch
+//   bend_cap            c_b of Choi & Ko, N/m: slope of the line that caps the buckled force near
+//                       the rest length; 0 means k_stretch
 
 namespace taut {
 
-// What a compressed stretch or shear spring does: `none`: nothing, the cloth buckles (Choi & Ko's type 1); `linear`: pushes back.
+// What a compressed stretch or shear spring does: `none`: nothing, the cloth buckles (Choi & Ko's
+// type 1); `linear`: pushes back.
 enum class Compression { none, linear };
-// `linear`: a linear spring both ways, its negative transverse term dropped; `choi_ko`: the post-buckling force of Choi & Ko's type 2.
+// `linear`: a linear spring both ways, its negative transverse term dropped; `choi_ko`: the
+// post-buckling force of Choi & Ko's type 2.
 enum class BendModel { linear, choi_ko };
 
 struct SpringMaterial {

@@ -27,9 +27,11 @@ constexpr Index springs_per_task = 1024;
 
 // The law as a template argument: the linear ones then have no branch on it in the loop.
 template <SpringLawKind law>
-void evaluate_range(std::span<const Spring> springs, const ForceRequest& request, double* blocks, Vec3* vectors, Index begin, Index end) {
+void evaluate_range(std::span<const Spring> springs, const ForceRequest& request, double* blocks,
+                    Vec3* vectors, Index begin, Index end) {
   const bool wants_matrix = request.wants_matrix();
-  const bool k_operand = !request.stiffness_operand.empty(), d_operand = !request.damping_operand.empty();
+  const bool k_operand = !request.stiffness_operand.empty(),
+             d_operand = !request.damping_operand.empty();
   for (Index s = begin; s < end; ++s) {
     const Spring& spring = springs[s];
     const SpringParameters& p = spring.parameters;
@@ -54,12 +56,16 @@ void evaluate_range(std::span<const Spring> springs, const ForceRequest& request
       const Vec3 w = request.stiffness_operand[spring.i] - request.stiffness_operand[spring.j];
       g += transverse * w + ((t.slope - transverse) * e.dot(w)) * e;
     }
-    if (d_operand) g += (damping * e.dot(request.damping_operand[spring.i] - request.damping_operand[spring.j])) * e;
+    if (d_operand)
+      g +=
+          (damping * e.dot(request.damping_operand[spring.i] - request.damping_operand[spring.j])) *
+          e;
     vectors[s] = g;
 
     if (wants_matrix) {
       const double across = request.matrix_stiffness * transverse;
-      const double along = request.matrix_stiffness * t.slope + request.matrix_damping * damping - across;
+      const double along =
+          request.matrix_stiffness * t.slope + request.matrix_damping * damping - across;
       const double ax = along * e.x(), ay = along * e.y(), az = along * e.z();
       block[0] = ax * e.x() + across, block[1] = ax * e.y(), block[2] = ax * e.z();
       block[3] = block[1], block[4] = ay * e.y() + across, block[5] = ay * e.z();
@@ -95,20 +101,25 @@ void SpringModel::connect(ConnectionSink& sink) const {
   }
 }
 
-void SpringModel::evaluate(const ForceRequest& request, std::span<double> blocks, std::span<Vec3> vectors) const {
+void SpringModel::evaluate(const ForceRequest& request, std::span<double> blocks,
+                           std::span<Vec3> vectors) const {
   parallel_for(block_count(), springs_per_task, [&](Index begin, Index end) {
     switch (law_) {
       case SpringLawKind::linear:
-        return evaluate_range<SpringLawKind::linear>(springs_, request, blocks.data(), vectors.data(), begin, end);
+        return evaluate_range<SpringLawKind::linear>(springs_, request, blocks.data(),
+                                                     vectors.data(), begin, end);
       case SpringLawKind::buckling:
-        return evaluate_range<SpringLawKind::buckling>(springs_, request, blocks.data(), vectors.data(), begin, end);
+        return evaluate_range<SpringLawKind::buckling>(springs_, request, blocks.data(),
+                                                       vectors.data(), begin, end);
       case SpringLawKind::choi_ko:
-        return evaluate_range<SpringLawKind::choi_ko>(springs_, request, blocks.data(), vectors.data(), begin, end);
+        return evaluate_range<SpringLawKind::choi_ko>(springs_, request, blocks.data(),
+                                                      vectors.data(), begin, end);
     }
   });
 }
 
-void SpringModel::bound_blocks(double matrix_stiffness, double matrix_damping, std::span<double> bounds) const {
+void SpringModel::bound_blocks(double matrix_stiffness, double matrix_damping,
+                               std::span<double> bounds) const {
   for (std::size_t s = 0; s < springs_.size(); ++s) {
     const SpringParameters& p = springs_[s].parameters;
     bounds[s] = matrix_stiffness * largest_stiffness(law_, p) + matrix_damping * p.damping;
@@ -118,26 +129,33 @@ void SpringModel::bound_blocks(double matrix_stiffness, double matrix_damping, s
 double SpringModel::energy(std::span<const Vec3> x) const {
   return ordered_sum(block_count(), [&](Index begin, Index end) {
     double sum = 0.0;
-    for (Index s = begin; s < end; ++s) sum += spring_energy(law_, springs_[s].parameters, (x[springs_[s].j] - x[springs_[s].i]).norm());
+    for (Index s = begin; s < end; ++s)
+      sum +=
+          spring_energy(law_, springs_[s].parameters, (x[springs_[s].j] - x[springs_[s].i]).norm());
     return sum;
   });
 }
 
 Index SpringModel::collapsed(std::span<const Vec3> x) const {
-  return static_cast<Index>(std::ranges::count_if(springs_, [&](const Spring& s) { return x[s.i] == x[s.j]; }));
+  return static_cast<Index>(
+      std::ranges::count_if(springs_, [&](const Spring& s) { return x[s.i] == x[s.j]; }));
 }
 
 double largest_strain(const SpringModel& model, std::span<const Vec3> x) {
   struct Largest {
     double value = -1.0;
-    Largest& operator+=(const Largest& other) { return value = std::max(value, other.value), *this; }
+    Largest& operator+=(const Largest& other) {
+      return value = std::max(value, other.value), *this;
+    }
   };
   const auto springs = model.springs();
   return ordered_sum<Largest>(static_cast<Index>(springs.size()),
                               [&](Index begin, Index end) {
                                 Largest largest;
                                 for (Index s = begin; s < end; ++s)
-                                  largest += Largest{(x[springs[s].j] - x[springs[s].i]).norm() / springs[s].parameters.rest_length - 1.0};
+                                  largest += Largest{(x[springs[s].j] - x[springs[s].i]).norm() /
+                                                         springs[s].parameters.rest_length -
+                                                     1.0};
                                 return largest;
                               })
       .value;
@@ -146,7 +164,8 @@ double largest_strain(const SpringModel& model, std::span<const Vec3> x) {
 std::vector<double> spring_strains(const SpringModel& model, std::span<const Vec3> x) {
   std::vector<double> strains;
   strains.reserve(model.springs().size());
-  for (const Spring& s : model.springs()) strains.push_back((x[s.j] - x[s.i]).norm() / s.parameters.rest_length - 1.0);
+  for (const Spring& s : model.springs())
+    strains.push_back((x[s.j] - x[s.i]).norm() / s.parameters.rest_length - 1.0);
   return strains;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
-// All springs of one class (stretch, shear or bend) of one cloth, as a ForceModel. Formulas: spring_law.h. Each spring adds [B -B; -B B] to the matrix
-// and g, -g to the vector, B and g as ForceModel's combination.
+// All springs of one class (stretch, shear or bend) of one cloth, as a ForceModel. Formulas:
+// spring_law.h. Each spring adds [B -B; -B B] to the matrix and g, -g to the vector, B and g as
+// ForceModel's combination.
 
 #include "taut/element/force_model.h"
 #include "taut/element/spring_law.h"
@@ -22,8 +23,10 @@ class SpringModel : public ForceModel {
   Index block_count() const override { return static_cast<Index>(springs_.size()); }
   Index vector_count() const override { return block_count(); }
   void connect(ConnectionSink& sink) const override;
-  void evaluate(const ForceRequest& request, std::span<double> blocks, std::span<Vec3> vectors) const override;
-  void bound_blocks(double matrix_stiffness, double matrix_damping, std::span<double> bounds) const override;
+  void evaluate(const ForceRequest& request, std::span<double> blocks,
+                std::span<Vec3> vectors) const override;
+  void bound_blocks(double matrix_stiffness, double matrix_damping,
+                    std::span<double> bounds) const override;
   double energy(std::span<const Vec3> x) const override;
   Index collapsed(std::span<const Vec3> x) const override;
 

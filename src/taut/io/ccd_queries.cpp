@@ -16,7 +16,8 @@ constexpr std::string_view blanks = " \t\r\v\f";
 
 class RowReader {
  public:
-  RowReader(std::string file, std::string_view line, int number) : file_(std::move(file)), line_(line), number_(number) {}
+  RowReader(std::string file, std::string_view line, int number)
+      : file_(std::move(file)), line_(line), number_(number) {}
 
   // The next column, without blanks around it; at the end of the line there is none.
   std::optional<std::string_view> column() {
@@ -33,10 +34,15 @@ class RowReader {
 
   double number(const char* what) {
     const auto word = column();
-    if (!word) fail(fmt::format("the row ends where {} is expected: a row has 6 columns num,den,num,den,num,den and perhaps a 7th", what));
+    if (!word)
+      fail(
+          fmt::format("the row ends where {} is expected: a row has 6 columns "
+                      "num,den,num,den,num,den and perhaps a 7th",
+                      what));
     double value = 0.0;
     if (word->empty() || parse_number(*word, value) != NumberFault::none || !std::isfinite(value))
-      fail(fmt::format("found {} where {} is expected, a finite decimal number", in_quotes(*word), what));
+      fail(fmt::format("found {} where {} is expected, a finite decimal number", in_quotes(*word),
+                       what));
     return value;
   }
 
@@ -45,22 +51,28 @@ class RowReader {
     const double denominator = number(fmt::format("the denominator of {}", axis).c_str());
     if (denominator == 0.0) fail(fmt::format("the denominator of {} is 0", axis));
     const double value = numerator / denominator;
-    if (!std::isfinite(value)) fail(fmt::format("{} = {:g} / {:g} is too large", axis, numerator, denominator));
+    if (!std::isfinite(value))
+      fail(fmt::format("{} = {:g} / {:g} is too large", axis, numerator, denominator));
     return value;
   }
 
   std::optional<bool> truth() {
     const auto word = column();
     if (!word) return std::nullopt;
-    if (*word != "0" && *word != "1") fail(fmt::format("found {} in column 7, where the true answer 0 or 1 is expected", in_quotes(*word)));
+    if (*word != "0" && *word != "1")
+      fail(fmt::format("found {} in column 7, where the true answer 0 or 1 is expected",
+                       in_quotes(*word)));
     return *word == "1";
   }
 
   void finish() {
-    if (column()) fail("the row has more than 7 columns: num,den,num,den,num,den and the true answer");
+    if (column())
+      fail("the row has more than 7 columns: num,den,num,den,num,den and the true answer");
   }
 
-  [[noreturn]] void fail(const std::string& message) const { throw InputError({file_, number_, static_cast<int>(column_) + 1}, message); }
+  [[noreturn]] void fail(const std::string& message) const {
+    throw InputError({file_, number_, static_cast<int>(column_) + 1}, message);
+  }
 
  private:
   std::string file_;
@@ -77,9 +89,13 @@ void read_row(RowReader& row, int corner, bool first_query, std::vector<CcdQuery
   row.finish();
   if (corner == 0) query.truth = truth;
   if (truth != query.truth)
-    row.fail("the true answer differs from that of the first row of this query: all eight rows of a query have the same");
+    row.fail(
+        "the true answer differs from that of the first row of this query: all eight rows of a "
+        "query have the same");
   if (!first_query && truth.has_value() != queries.front().truth.has_value())
-    row.fail("some queries have a 7th column with the true answer and some have none: give it for all or for none");
+    row.fail(
+        "some queries have a 7th column with the true answer and some have none: give it for all "
+        "or for none");
 }
 
 }  // namespace
@@ -100,12 +116,14 @@ std::vector<CcdQuery> read_ccd_queries(const std::filesystem::path& path) {
     corner = (corner + 1) % 8;
   }
   if (corner != 0)
-    throw InputError({path.string(), line_number, 0},
-                     fmt::format("the last query has {} rows instead of 8: four corners at the start and the "
-                                 "same four at the end; complete it or remove it",
-                                 corner));
+    throw InputError(
+        {path.string(), line_number, 0},
+        fmt::format("the last query has {} rows instead of 8: four corners at the start and the "
+                    "same four at the end; complete it or remove it",
+                    corner));
   if (queries.empty())
-    throw InputError({path.string(), 0, 0}, "there is no query in this file: eight rows num,den,num,den,num,den are one");
+    throw InputError({path.string(), 0, 0},
+                     "there is no query in this file: eight rows num,den,num,den,num,den are one");
   return queries;
 }
 

@@ -23,7 +23,8 @@ class Pipe {
  public:
   Pipe() {
     // Not inherited by children that other threads start.
-    if (::pipe2(ends_.data(), O_CLOEXEC) != 0) throw InputError(std::string("no pipe can be had: ") + std::strerror(errno));
+    if (::pipe2(ends_.data(), O_CLOEXEC) != 0)
+      throw InputError(std::string("no pipe can be had: ") + std::strerror(errno));
   }
   ~Pipe() {
     close(0);
@@ -63,11 +64,16 @@ bool take(int descriptor, std::string& text) {
 }
 
 // Reads both pipes to their ends; false when the deadline comes first.
-bool listen(Pipe& output, Pipe& errors, ChildEnd& end, std::chrono::steady_clock::time_point deadline) {
+bool listen(Pipe& output, Pipe& errors, ChildEnd& end,
+            std::chrono::steady_clock::time_point deadline) {
   for (;;) {
-    std::array<pollfd, 2> waiting{pollfd{output.reader(), POLLIN, 0}, pollfd{errors.reader(), POLLIN, 0}};  // -1 is passed over
+    // -1 is passed over
+    std::array<pollfd, 2> waiting{pollfd{output.reader(), POLLIN, 0},
+                                  pollfd{errors.reader(), POLLIN, 0}};
     if (waiting[0].fd < 0 && waiting[1].fd < 0) return true;
-    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now()).count();
+    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(
+                          deadline - std::chrono::steady_clock::now())
+                          .count();
     if (left <= 0) return false;
     const int ready = ::poll(waiting.data(), waiting.size(), static_cast<int>(left));
     if (ready < 0 && errno != EINTR) return false;
@@ -96,7 +102,8 @@ ChildEnd run_child(const std::vector<std::string>& arguments, std::chrono::milli
     end.outcome = ChildEnd::Outcome::not_found;
     return end;
   }
-  if (failure != 0) throw InputError(arguments[0] + " cannot be started: " + std::strerror(failure));
+  if (failure != 0)
+    throw InputError(arguments[0] + " cannot be started: " + std::strerror(failure));
   output.close(1);
   errors.close(1);
   const bool in_time = listen(output, errors, end, deadline);
@@ -106,14 +113,16 @@ ChildEnd run_child(const std::vector<std::string>& arguments, std::chrono::milli
   do waited = ::waitpid(child, &state, 0);
   while (waited < 0 && errno == EINTR);
   // Who ignores SIGCHLD, or was started so, is not told.
-  if (waited < 0) throw InputError("how " + arguments[0] + " ended is not known: " + std::strerror(errno));
+  if (waited < 0)
+    throw InputError("how " + arguments[0] + " ended is not known: " + std::strerror(errno));
   if (!in_time)
     end.outcome = ChildEnd::Outcome::too_slow;
   else if (!WIFEXITED(state))
     end.outcome = ChildEnd::Outcome::killed;
   else
     end.code = WEXITSTATUS(state);
-  if (end.outcome == ChildEnd::Outcome::exited && end.code == 127) end.outcome = ChildEnd::Outcome::not_found;
+  if (end.outcome == ChildEnd::Outcome::exited && end.code == 127)
+    end.outcome = ChildEnd::Outcome::not_found;
   return end;
 }
 

@@ -14,8 +14,9 @@ struct ChildEnd {
   std::string output, errors;
 };
 
-// arguments[0] is looked for in PATH. Its standard input is empty. A child that has not ended after `patience` is killed. Throws InputError
-// when the system cannot start anything, or does not say how it ended (it says nothing to those who ignore SIGCHLD).
+// arguments[0] is looked for in PATH. Its standard input is empty. A child that has not ended after
+// `patience` is killed. Throws InputError when the system cannot start anything, or does not say
+// how it ended (it says nothing to those who ignore SIGCHLD).
 ChildEnd run_child(const std::vector<std::string>& arguments, std::chrono::milliseconds patience);
 
 }  // namespace taut

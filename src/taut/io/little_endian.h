@@ -1,5 +1,6 @@
 #pragma once
-// Numbers as little-endian bytes, the order of .npy, .pc2, .ply and .glb files, on any machine; big-endian for .mdd files.
+// Numbers as little-endian bytes, the order of .npy, .pc2, .ply and .glb files, on any machine;
+// big-endian for .mdd files.
 
 #include <algorithm>
 #include <bit>
@@ -11,7 +12,8 @@ namespace taut {
 // In place: from or to the machine's order.
 inline void swap_if_big_endian(char* bytes, std::size_t item_size, std::size_t count) {
   if constexpr (std::endian::native == std::endian::big)
-    for (std::size_t k = 0; k < count; ++k) std::reverse(bytes + k * item_size, bytes + (k + 1) * item_size);
+    for (std::size_t k = 0; k < count; ++k)
+      std::reverse(bytes + k * item_size, bytes + (k + 1) * item_size);
 }
 
 template <class T>

@@ -42,19 +42,24 @@ void for_each_lower(const BlockCsr& a, Visit visit) {
 
 }  // namespace
 
-void write_symmetric_matrix(const std::filesystem::path& path, const BlockCsr& matrix, const std::string& comment) {
+void write_symmetric_matrix(const std::filesystem::path& path, const BlockCsr& matrix,
+                            const std::string& comment) {
   Offset count = 0;
   for_each_lower(matrix, [&](Index, Index, double) { ++count; });
   write_file(path, [&](std::ostream& out) {
-    out << header("coordinate real symmetric", comment) << matrix.dofs() << ' ' << matrix.dofs() << ' ' << count << '\n';
+    out << header("coordinate real symmetric", comment) << matrix.dofs() << ' ' << matrix.dofs()
+        << ' ' << count << '\n';
     std::string line;
-    for_each_lower(matrix, [&](Index row, Index column, double value) { write_entry(out, line, row, column, value); });
+    for_each_lower(matrix, [&](Index row, Index column, double value) {
+      write_entry(out, line, row, column, value);
+    });
   });
 }
 
 namespace {
 
-void write_coordinates(const std::filesystem::path& path, const char* kind, Index rows, Index columns, std::span<const MatrixEntry> entries,
+void write_coordinates(const std::filesystem::path& path, const char* kind, Index rows,
+                       Index columns, std::span<const MatrixEntry> entries,
                        const std::string& comment) {
   write_file(path, [&](std::ostream& out) {
     out << header(kind, comment) << rows << ' ' << columns << ' ' << entries.size() << '\n';
@@ -68,17 +73,19 @@ void write_coordinates(const std::filesystem::path& path, const char* kind, Inde
 
 }  // namespace
 
-void write_symmetric_matrix(const std::filesystem::path& path, Index rows, std::span<const MatrixEntry> lower, const std::string& comment) {
+void write_symmetric_matrix(const std::filesystem::path& path, Index rows,
+                            std::span<const MatrixEntry> lower, const std::string& comment) {
   for ([[maybe_unused]] const MatrixEntry& entry : lower) assert(entry.row >= entry.column);
   write_coordinates(path, "coordinate real symmetric", rows, rows, lower, comment);
 }
 
-void write_general_matrix(const std::filesystem::path& path, Index rows, Index columns, std::span<const MatrixEntry> entries,
-                          const std::string& comment) {
+void write_general_matrix(const std::filesystem::path& path, Index rows, Index columns,
+                          std::span<const MatrixEntry> entries, const std::string& comment) {
   write_coordinates(path, "coordinate real general", rows, columns, entries, comment);
 }
 
-void write_vector(const std::filesystem::path& path, std::span<const double> vector, const std::string& comment) {
+void write_vector(const std::filesystem::path& path, std::span<const double> vector,
+                  const std::string& comment) {
   write_file(path, [&](std::ostream& out) {
     out << header("array real general", comment) << vector.size() << " 1\n";
     std::string line;

@@ -1,6 +1,6 @@
 #pragma once
-// A mesh from a file, by its extension: .obj (io/obj.h) or .ply (io/ply.h), also gzip'd with .gz after it; .usd, .usda, .usdc or .usdz
-// (io/usd.h).
+// A mesh from a file, by its extension: .obj (io/obj.h) or .ply (io/ply.h), also gzip'd with .gz
+// after it; .usd, .usda, .usdc or .usdz (io/usd.h).
 
 #include <filesystem>
 #include <string>
@@ -10,7 +10,9 @@
 
 namespace taut {
 
-// `prim`: which mesh of a USD file, empty for others. Throws InputError for another extension, and as read_obj, read_ply and read_usd.
-TriangleMesh read_mesh(const std::filesystem::path& path, const std::string& prim = {}, std::vector<std::string>* notes = nullptr);
+// `prim`: which mesh of a USD file, empty for others. Throws InputError for another extension, and
+// as read_obj, read_ply and read_usd.
+TriangleMesh read_mesh(const std::filesystem::path& path, const std::string& prim = {},
+                       std::vector<std::string>* notes = nullptr);
 
 }  // namespace taut

@@ -25,7 +25,8 @@ constexpr const char* type_name() {
 
 std::string shape_text(const std::vector<std::int64_t>& shape) {
   std::string text;
-  for (const std::int64_t length : shape) text += (text.empty() ? "" : " x ") + std::to_string(length);
+  for (const std::int64_t length : shape)
+    text += (text.empty() ? "" : " x ") + std::to_string(length);
   return text.empty() ? "a single number" : text;
 }
 
@@ -44,10 +45,11 @@ std::int64_t value_count(const std::vector<std::int64_t>& shape, std::int64_t mo
 NpyHeader checked_header(const std::string& file, const std::string& bytes, const char* type) {
   NpyHeader header = parse_npy_header(file, bytes);
   if (header.type != type)
-    throw InputError({file},
-                     "holds numbers of type '" + header.type + "', '" + type + "' was expected; convert with numpy.astype and save again");
+    throw InputError({file}, "holds numbers of type '" + header.type + "', '" + type +
+                                 "' was expected; convert with numpy.astype and save again");
   if (header.fortran_order && header.shape.size() > 1)
-    throw InputError({file}, "is in Fortran order, C order was expected; save numpy.ascontiguousarray(a)");
+    throw InputError({file},
+                     "is in Fortran order, C order was expected; save numpy.ascontiguousarray(a)");
   return header;
 }
 
@@ -57,8 +59,10 @@ NpyArray<T> array_of(const std::string& file, const std::string& bytes) {
   const std::size_t available = bytes.size() - header.data_start;
   const std::int64_t count = value_count(header.shape, static_cast<std::int64_t>(available));
   if (count < 0 || static_cast<std::size_t>(count) * sizeof(T) != available)
-    throw InputError({file}, "has " + std::to_string(available) + " bytes of data, which is not " + shape_text(header.shape) +
-                                 " numbers of " + std::to_string(sizeof(T)) + " bytes; the file was cut short or written wrongly");
+    throw InputError({file}, "has " + std::to_string(available) + " bytes of data, which is not " +
+                                 shape_text(header.shape) + " numbers of " +
+                                 std::to_string(sizeof(T)) +
+                                 " bytes; the file was cut short or written wrongly");
   NpyArray<T> array{std::move(header.shape), std::vector<T>(static_cast<std::size_t>(count))};
   if (available > 0) std::memcpy(array.values.data(), bytes.data() + header.data_start, available);
   swap_if_big_endian(reinterpret_cast<char*>(array.values.data()), sizeof(T), array.values.size());
@@ -68,16 +72,19 @@ NpyArray<T> array_of(const std::string& file, const std::string& bytes) {
 template <class T>
 std::vector<Vec3> nodes_of(const std::string& file, const NpyArray<T>& array) {
   if (array.shape.size() != 2 || array.shape[1] != 3)
-    throw InputError({file}, "has shape " + shape_text(array.shape) + ", n x 3 was expected (one row a node)");
+    throw InputError(
+        {file}, "has shape " + shape_text(array.shape) + ", n x 3 was expected (one row a node)");
   std::vector<Vec3> nodes(array.values.size() / 3);
-  for (std::size_t k = 0; k < array.values.size(); ++k) nodes[k / 3][static_cast<int>(k % 3)] = array.values[k];
+  for (std::size_t k = 0; k < array.values.size(); ++k)
+    nodes[k / 3][static_cast<int>(k % 3)] = array.values[k];
   return nodes;
 }
 
 }  // namespace
 
 template <class T>
-void write_npy(const std::filesystem::path& path, std::span<const std::int64_t> shape, const std::function<std::span<const T>()>& next) {
+void write_npy(const std::filesystem::path& path, std::span<const std::int64_t> shape,
+               const std::function<std::span<const T>()>& next) {
   const std::vector<std::int64_t> axes(shape.begin(), shape.end());
   write_file(path, [&](std::ostream& out) {
     out << npy_header_text(type_name<T>(), axes);
@@ -94,7 +101,8 @@ void write_npy(const std::filesystem::path& path, std::span<const std::int64_t> 
 }
 
 template <class T>
-void write_npy(const std::filesystem::path& path, std::span<const T> values, std::span<const std::int64_t> shape) {
+void write_npy(const std::filesystem::path& path, std::span<const T> values,
+               std::span<const std::int64_t> shape) {
   assert(value_count({shape.begin(), shape.end()}, std::ssize(values)) == std::ssize(values));
   write_npy<T>(path, shape, [&] { return values; });
 }
@@ -104,11 +112,16 @@ NpyArray<T> read_npy(const std::filesystem::path& path) {
   return array_of<T>(path.string(), read_file(path));
 }
 
-template void write_npy(const std::filesystem::path&, std::span<const float>, std::span<const std::int64_t>);
-template void write_npy(const std::filesystem::path&, std::span<const double>, std::span<const std::int64_t>);
-template void write_npy(const std::filesystem::path&, std::span<const std::int32_t>, std::span<const std::int64_t>);
-template void write_npy(const std::filesystem::path&, std::span<const std::uint8_t>, std::span<const std::int64_t>);
-template void write_npy(const std::filesystem::path&, std::span<const std::int64_t>, const std::function<std::span<const float>()>&);
+template void write_npy(const std::filesystem::path&, std::span<const float>,
+                        std::span<const std::int64_t>);
+template void write_npy(const std::filesystem::path&, std::span<const double>,
+                        std::span<const std::int64_t>);
+template void write_npy(const std::filesystem::path&, std::span<const std::int32_t>,
+                        std::span<const std::int64_t>);
+template void write_npy(const std::filesystem::path&, std::span<const std::uint8_t>,
+                        std::span<const std::int64_t>);
+template void write_npy(const std::filesystem::path&, std::span<const std::int64_t>,
+                        const std::function<std::span<const float>()>&);
 template NpyArray<float> read_npy(const std::filesystem::path&);
 template NpyArray<double> read_npy(const std::filesystem::path&);
 template NpyArray<std::int32_t> read_npy(const std::filesystem::path&);
@@ -129,7 +142,8 @@ void write_npy_float(const std::filesystem::path& path, std::span<const Vec3> no
 std::vector<Vec3> read_npy_nodes(const std::filesystem::path& path) {
   const std::string bytes = read_file(path);
   const std::string file = path.string();
-  if (parse_npy_header(file, bytes).type == type_name<float>()) return nodes_of(file, array_of<float>(file, bytes));
+  if (parse_npy_header(file, bytes).type == type_name<float>())
+    return nodes_of(file, array_of<float>(file, bytes));
   return nodes_of(file, array_of<double>(file, bytes));
 }
 

@@ -2,11 +2,13 @@
 // NumPy arrays in .npy files: numpy.load(path) reads what is written here.
 //
 //   T        float (<f4), double (<f8), std::int32_t (<i4), little-endian, or std::uint8_t (|u1)
-//   shape    any number of axes, the last one fastest (C order); the values are shape[0] x shape[1] x ... numbers
+//   shape    any number of axes, the last one fastest (C order); the values are shape[0] x shape[1]
+//            x ... numbers
 //
-// Source: NumPy, "numpy.lib.format", version 1.0 of the file format (versions 2.0 and 3.0 are read too).
-// Written through a temporary file; throws InputError when that fails. Reading throws InputError when the file is no .npy, holds another
-// type (no silent conversion), is big-endian or in Fortran order, or its size does not fit its shape; memory is bounded by the file's size.
+// Source: NumPy, "numpy.lib.format", version 1.0 of the file format (versions 2.0 and 3.0 are read
+// too). Written through a temporary file; throws InputError when that fails. Reading throws
+// InputError when the file is no .npy, holds another type (no silent conversion), is big-endian or
+// in Fortran order, or its size does not fit its shape; memory is bounded by the file's size.
 
 #include <cstdint>
 #include <filesystem>
@@ -26,12 +28,14 @@ struct NpyArray {
 
 // Asserts that shape and number of values fit.
 template <class T>
-void write_npy(const std::filesystem::path& path, std::span<const T> values, std::span<const std::int64_t> shape);
+void write_npy(const std::filesystem::path& path, std::span<const T> values,
+               std::span<const std::int64_t> shape);
 
-// The same in pieces, one after the other in memory: `next` is asked for piece after piece until the shape is filled. Asserts that it ends
-// there.
+// The same in pieces, one after the other in memory: `next` is asked for piece after piece until
+// the shape is filled. Asserts that it ends there.
 template <class T>
-void write_npy(const std::filesystem::path& path, std::span<const std::int64_t> shape, const std::function<std::span<const T>()>& next);
+void write_npy(const std::filesystem::path& path, std::span<const std::int64_t> shape,
+               const std::function<std::span<const T>()>& next);
 
 template <class T>
 NpyArray<T> read_npy(const std::filesystem::path& path);

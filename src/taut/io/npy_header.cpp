@@ -14,13 +14,15 @@ constexpr std::string_view magic = "\x93NUMPY";
 
 std::string tuple_text(const std::vector<std::int64_t>& shape) {
   std::string text = "(";
-  for (std::size_t axis = 0; axis < shape.size(); ++axis) text += (axis ? ", " : "") + std::to_string(shape[axis]);
+  for (std::size_t axis = 0; axis < shape.size(); ++axis)
+    text += (axis ? ", " : "") + std::to_string(shape[axis]);
   return text + (shape.size() == 1 ? ",)" : ")");
 }
 
 std::uint32_t little_endian_number(std::string_view bytes) {
   std::uint32_t value = 0;
-  for (std::size_t k = bytes.size(); k-- > 0;) value = value << 8 | static_cast<unsigned char>(bytes[k]);
+  for (std::size_t k = bytes.size(); k-- > 0;)
+    value = value << 8 | static_cast<unsigned char>(bytes[k]);
   return value;
 }
 
@@ -112,7 +114,8 @@ class HeaderParser {
 }  // namespace
 
 std::string npy_header_text(std::string_view type, const std::vector<std::int64_t>& shape) {
-  std::string dictionary = "{'descr': '" + std::string(type) + "', 'fortran_order': False, 'shape': " + tuple_text(shape) + ", }";
+  std::string dictionary = "{'descr': '" + std::string(type) +
+                           "', 'fortran_order': False, 'shape': " + tuple_text(shape) + ", }";
   constexpr std::size_t alignment = 64, prefix = magic.size() + 4;
   dictionary.append(alignment - (prefix + dictionary.size() + 1) % alignment, ' ');
   dictionary += '\n';
@@ -124,13 +127,17 @@ std::string npy_header_text(std::string_view type, const std::vector<std::int64_
 
 NpyHeader parse_npy_header(const std::string& file, std::string_view bytes) {
   if (bytes.size() < 12 || bytes.substr(0, magic.size()) != magic)
-    throw InputError({file}, "is not a .npy file (it does not begin with \\x93NUMPY); save it with numpy.save");
+    throw InputError(
+        {file}, "is not a .npy file (it does not begin with \\x93NUMPY); save it with numpy.save");
   const int version = bytes[6];
-  if (version < 1 || version > 3) throw InputError({file}, "has .npy version " + std::to_string(version) + ", 1 to 3 can be read");
+  if (version < 1 || version > 3)
+    throw InputError({file},
+                     "has .npy version " + std::to_string(version) + ", 1 to 3 can be read");
   const std::size_t length_bytes = version == 1 ? 2 : 4;
   const std::size_t begin = magic.size() + 2 + length_bytes;
   const std::size_t length = little_endian_number(bytes.substr(magic.size() + 2, length_bytes));
-  if (length > bytes.size() - begin) throw InputError({file}, "ends within its .npy header; the file was cut short");
+  if (length > bytes.size() - begin)
+    throw InputError({file}, "ends within its .npy header; the file was cut short");
   NpyHeader header = HeaderParser(file, bytes.substr(begin, length)).parse();
   header.data_start = begin + length;
   return header;

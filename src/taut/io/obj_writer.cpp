@@ -35,7 +35,8 @@ void write_obj(const std::filesystem::path& path, const TriangleMesh& mesh, ObjD
     for (const Vec3& position : mesh.positions) out << statement("v", position, digits);
     for (const Vec2& texcoord : mesh.texcoords) out << statement("vt", texcoord, digits);
     for (const Triangle& t : mesh.triangles)
-      out << 'f' << corner(t[0], with_texcoords) << corner(t[1], with_texcoords) << corner(t[2], with_texcoords) << '\n';
+      out << 'f' << corner(t[0], with_texcoords) << corner(t[1], with_texcoords)
+          << corner(t[2], with_texcoords) << '\n';
   });
 }
 

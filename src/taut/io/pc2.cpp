@@ -30,8 +30,11 @@ std::string header(Index points, float start_frame, float sample_rate) {
 
 }  // namespace
 
-Pc2Writer::Pc2Writer(const std::filesystem::path& path, Index points, float start_frame, float sample_rate)
-    : path_(path), temporary_(path.string() + ".tmp" + std::to_string(::getpid())), points_(points) {
+Pc2Writer::Pc2Writer(const std::filesystem::path& path, Index points, float start_frame,
+                     float sample_rate)
+    : path_(path),
+      temporary_(path.string() + ".tmp" + std::to_string(::getpid())),
+      points_(points) {
   std::error_code failure;
   if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), failure);
   errno = 0;
@@ -52,14 +55,16 @@ void Pc2Writer::fail() const {
   // The constructor does not reach the destructor when it throws.
   std::error_code failure;
   std::filesystem::remove(temporary_, failure);
-  throw InputError({path_.string()}, "cannot be written: " + reason + "; check the folder's permissions and free space");
+  throw InputError({path_.string()}, "cannot be written: " + reason +
+                                         "; check the folder's permissions and free space");
 }
 
 void Pc2Writer::add_sample(std::span<const Vec3> positions) {
   assert(static_cast<Index>(positions.size()) == points_);
   std::string bytes;
   bytes.reserve(positions.size() * 3 * sizeof(float));
-  for (const double coordinate : flat(positions)) append_little_endian(bytes, static_cast<float>(coordinate));
+  for (const double coordinate : flat(positions))
+    append_little_endian(bytes, static_cast<float>(coordinate));
   errno = 0;
   stream_.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   if (!stream_) fail();

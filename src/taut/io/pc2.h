@@ -1,18 +1,23 @@
 #pragma once
-// PC2 point caches: the positions of a mesh's vertices over time, for Blender, Maya, Houdini and others; the mesh itself goes into an OBJ.
+// PC2 point caches: the positions of a mesh's vertices over time, for Blender, Maya, Houdini and
+// others; the mesh itself goes into an OBJ.
 //
-//   header, 32 bytes little-endian:  "POINTCACHE2\0", int32 version = 1, int32 points, float start_frame, float sample_rate, int32 samples
-//   then for each sample             points x 3 float32: x y z of each vertex in the mesh's order, m
+//   header, 32 bytes little-endian:  "POINTCACHE2\0", int32 version = 1, int32 points, float
+//                                    start_frame, float sample_rate, int32 samples
+//   then for each sample             points x 3 float32: x y z of each vertex in the mesh's order,
+//                                    m
 //
-// sample_rate = frames between two samples (1: a sample a frame). Source: the 3ds Max PC2 format as Blender's Mesh Cache reads it.
+// sample_rate = frames between two samples (1: a sample a frame). Source: the 3ds Max PC2 format as
+// Blender's Mesh Cache reads it.
 //
-// Written: samples go to a temporary file beside `path` as they come; finish() fills in their number and renames it, so a reader never sees
-// half a cache. A writer that is destroyed before finish() removes the temporary file. Throws InputError naming the file when it cannot be
-// written.
+// Written: samples go to a temporary file beside `path` as they come; finish() fills in their
+// number and renames it, so a reader never sees half a cache. A writer that is destroyed before
+// finish() removes the temporary file. Throws InputError naming the file when it cannot be written.
 //
-// Read: all samples at once, 24 bytes a point and sample. Throws InputError naming the file, and sample and point where there is one, when
-// it is no PC2 file of version 1, is shorter or longer than its header says, holds no point or no sample, a sample_rate that is not
-// positive, or a coordinate that is not finite; memory is bounded by the file's size.
+// Read: all samples at once, 24 bytes a point and sample. Throws InputError naming the file, and
+// sample and point where there is one, when it is no PC2 file of version 1, is shorter or longer
+// than its header says, holds no point or no sample, a sample_rate that is not positive, or a
+// coordinate that is not finite; memory is bounded by the file's size.
 
 #include <filesystem>
 #include <fstream>
@@ -28,9 +33,13 @@ struct PointCache {
   double start_frame = 0.0;
   double sample_rate = 1.0;
   std::vector<Vec3> positions;  // m, sample after sample, `points` each
-  Index samples() const { return static_cast<Index>(positions.size() / static_cast<std::size_t>(points)); }
+  Index samples() const {
+    return static_cast<Index>(positions.size() / static_cast<std::size_t>(points));
+  }
   std::span<const Vec3> sample(Index k) const {
-    return std::span(positions).subspan(static_cast<std::size_t>(k) * static_cast<std::size_t>(points), static_cast<std::size_t>(points));
+    return std::span(positions).subspan(
+        static_cast<std::size_t>(k) * static_cast<std::size_t>(points),
+        static_cast<std::size_t>(points));
   }
 };
 
@@ -38,7 +47,8 @@ PointCache read_pc2(const std::filesystem::path& path);
 
 class Pc2Writer {
  public:
-  Pc2Writer(const std::filesystem::path& path, Index points, float start_frame = 0, float sample_rate = 1);
+  Pc2Writer(const std::filesystem::path& path, Index points, float start_frame = 0,
+            float sample_rate = 1);
   ~Pc2Writer();
   Pc2Writer(const Pc2Writer&) = delete;
   Pc2Writer& operator=(const Pc2Writer&) = delete;

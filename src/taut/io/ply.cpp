@@ -43,7 +43,8 @@ class PlyReader {
 
  private:
   const PlyElement* find(std::string_view name) const {
-    const auto found = std::find_if(header_.elements.begin(), header_.elements.end(), [&](const PlyElement& e) { return e.name == name; });
+    const auto found = std::find_if(header_.elements.begin(), header_.elements.end(),
+                                    [&](const PlyElement& e) { return e.name == name; });
     return found == header_.elements.end() ? nullptr : &*found;
   }
 
@@ -51,20 +52,28 @@ class PlyReader {
     const PlyElement* vertex = find("vertex");
     const PlyElement* face = find("face");
     if (!vertex || vertex->count == 0)
-      throw InputError({file_}, "has no vertices; a PLY mesh with the elements 'vertex' and 'face' was expected");
-    if (!face || face->count == 0) throw InputError({file_}, fmt::format("has {} vertices but no faces", vertex->count));
+      throw InputError(
+          {file_},
+          "has no vertices; a PLY mesh with the elements 'vertex' and 'face' was expected");
+    if (!face || face->count == 0)
+      throw InputError({file_}, fmt::format("has {} vertices but no faces", vertex->count));
     constexpr std::int64_t most = std::numeric_limits<Index>::max();
     if (vertex->count > most || face->count > most)
-      throw InputError({file_, vertex->count > most ? vertex->line : face->line}, "more than 2147483647 vertices or faces");
+      throw InputError({file_, vertex->count > most ? vertex->line : face->line},
+                       "more than 2147483647 vertices or faces");
     for (const char* axis : {"x", "y", "z"}) {
       const int p = vertex->find({axis});
       if (p < 0 || vertex->properties[static_cast<std::size_t>(p)].is_list)
-        throw InputError({file_, vertex->line}, fmt::format("the element vertex has no property '{}'; x, y and z were expected", axis));
+        throw InputError(
+            {file_, vertex->line},
+            fmt::format("the element vertex has no property '{}'; x, y and z were expected", axis));
     }
     const int list = face->find({"vertex_indices", "vertex_index"});
     if (list < 0 || !face->properties[static_cast<std::size_t>(list)].is_list ||
         !detail::is_integer(face->properties[static_cast<std::size_t>(list)].type))
-      throw InputError({file_, face->line}, "the element face has no list of whole numbers 'vertex_indices' (or 'vertex_index')");
+      throw InputError(
+          {file_, face->line},
+          "the element face has no list of whole numbers 'vertex_indices' (or 'vertex_index')");
   }
 
   [[noreturn]] void fail(const std::string& element, const std::string& message) const {
@@ -74,7 +83,9 @@ class PlyReader {
   std::size_t list_length(const PlyProperty& property, const std::string& element) {
     const double length = data_->number(property.count_type);
     if (!(length >= 0) || length > static_cast<double>(data_->most_left(property.type)))
-      fail(element, fmt::format(": a list of {:g} numbers, which is more than the rest of the file holds", length));
+      fail(element,
+           fmt::format(": a list of {:g} numbers, which is more than the rest of the file holds",
+                       length));
     return static_cast<std::size_t>(length);
   }
 
@@ -95,8 +106,9 @@ class PlyReader {
     const double value = data_->number(property.type);
     if (!std::isfinite(value))
       fail(fmt::format("vertex {}", vertex),
-           fmt::format(": {} is {}, a finite number was expected; mend this vertex in the program that wrote the file", property.name,
-                       value));
+           fmt::format(": {} is {}, a finite number was expected; mend this vertex in the program "
+                       "that wrote the file",
+                       property.name, value));
     return value;
   }
 
@@ -144,10 +156,14 @@ class PlyReader {
     const std::string name = fmt::format("face {}", face);
     const auto vertices = static_cast<double>(find("vertex")->count);
     const std::size_t corners = list_length(property, name);
-    if (corners < 3) fail(name, fmt::format(" has {} corners, at least 3 were expected; remove it or mend it", corners));
+    if (corners < 3)
+      fail(name,
+           fmt::format(" has {} corners, at least 3 were expected; remove it or mend it", corners));
     for (std::size_t k = 0; k < corners; ++k) {
       const double index = data_->number(property.type);
-      if (!(index >= 0 && index < vertices)) fail(name, fmt::format(" names vertex {:.0f}, 0 to {:.0f} was expected", index, vertices - 1));
+      if (!(index >= 0 && index < vertices))
+        fail(name,
+             fmt::format(" names vertex {:.0f}, 0 to {:.0f} was expected", index, vertices - 1));
       corner_.push_back(static_cast<Index>(index));
     }
     face_end_.push_back(corner_.size());
@@ -160,7 +176,8 @@ class PlyReader {
       const std::optional<Index> start = unfolded_fan_start(corner, mesh_.positions);
       if (!start && notes_)
         notes_->push_back(
-            located({file_}, fmt::format("face {} has dents or crosses itself and folds over when cut into triangles; triangulate it "
+            located({file_}, fmt::format("face {} has dents or crosses itself and folds over when "
+                                         "cut into triangles; triangulate it "
                                          "before export",
                                          f)));
       append_fan(corner, start.value_or(0), mesh_.triangles);

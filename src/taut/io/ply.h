@@ -1,17 +1,20 @@
 #pragma once
 // PLY meshes ("Stanford" polygon files), text and binary.
 //
-// Read: the elements `vertex` with x, y, z (any numeric type), texture coordinates s, t or u, v or texture_u, texture_v when there are any,
-// and `face` with a list vertex_indices or vertex_index; polygons are cut into fans of triangles (io/polygon_fan.h). Other elements and
-// properties are passed over. LF, CRLF or CR; gzip. Vertices keep the file's order. Written: binary little-endian, float32 x, y, z, s and t
-// when there are texture coordinates, faces as uchar, int.
+// Read: the elements `vertex` with x, y, z (any numeric type), texture coordinates s, t or u, v or
+// texture_u, texture_v when there are any, and `face` with a list vertex_indices or vertex_index;
+// polygons are cut into fans of triangles (io/polygon_fan.h). Other elements and properties are
+// passed over. LF, CRLF or CR; gzip. Vertices keep the file's order. Written: binary little-endian,
+// float32 x, y, z, s and t when there are texture coordinates, faces as uchar, int.
 //
-// Source: G. Turk, "The PLY Polygon File Format", 1994. Why an own reader: rply and miniply give up without saying where.
+// Source: G. Turk, "The PLY Polygon File Format", 1994. Why an own reader: rply and miniply give up
+// without saying where.
 //
-// Throws InputError, in text with line and column, in binary files with the number of vertex or face (from 0) and the byte, for: a header
-// that is none; numbers missing, not finite or of the wrong kind; a face with fewer than three corners or with an index beyond the
-// vertices; a file that ends early; no vertices or no faces. Time and memory are linear in the size of the file, whatever its header
-// claims.
+// Throws InputError, in text with line and column, in binary files with the number of vertex or
+// face (from 0) and the byte, for: a header that is none; numbers missing, not finite or of the
+// wrong kind; a face with fewer than three corners or with an index beyond the vertices; a file
+// that ends early; no vertices or no faces. Time and memory are linear in the size of the file,
+// whatever its header claims.
 
 #include <filesystem>
 #include <string>
@@ -21,7 +24,8 @@
 
 namespace taut {
 
-// `notes` (when given) receives what was read but may not be what the user meant, one located sentence each.
+// `notes` (when given) receives what was read but may not be what the user meant, one located
+// sentence each.
 TriangleMesh read_ply(const std::filesystem::path& path, std::vector<std::string>* notes = nullptr);
 
 // Through a temporary file; throws InputError when that cannot be written.

@@ -23,6 +23,7 @@ class PlyData {
 };
 
 // `bytes` must outlive the result.
-std::unique_ptr<PlyData> make_ply_data(const std::string& file, std::string_view bytes, const PlyHeader& header);
+std::unique_ptr<PlyData> make_ply_data(const std::string& file, std::string_view bytes,
+                                       const PlyHeader& header);
 
 }  // namespace taut::detail

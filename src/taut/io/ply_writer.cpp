@@ -10,10 +10,12 @@ namespace taut {
 namespace {
 
 std::string header(const TriangleMesh& mesh) {
-  std::string text = "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(mesh.positions.size()) + '\n';
+  std::string text = "ply\nformat binary_little_endian 1.0\nelement vertex " +
+                     std::to_string(mesh.positions.size()) + '\n';
   for (const char* axis : {"x", "y", "z"}) text += std::string("property float ") + axis + '\n';
   if (!mesh.texcoords.empty()) text += "property float s\nproperty float t\n";
-  return text + "element face " + std::to_string(mesh.triangles.size()) + "\nproperty list uchar int vertex_indices\nend_header\n";
+  return text + "element face " + std::to_string(mesh.triangles.size()) +
+         "\nproperty list uchar int vertex_indices\nend_header\n";
 }
 
 }  // namespace

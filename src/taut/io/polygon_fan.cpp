@@ -6,7 +6,8 @@ namespace taut {
 
 namespace {
 
-// Beyond this many corners only the plain fan is tried: the search is quadratic, and a file may hold a polygon of a million corners.
+// Beyond this many corners only the plain fan is tried: the search is quadratic, and a file may
+// hold a polygon of a million corners.
 constexpr std::size_t most_searched = 64;
 
 Triangle fan_triangle(std::span<const Index> corner, std::size_t start, std::size_t k) {
@@ -14,7 +15,8 @@ Triangle fan_triangle(std::span<const Index> corner, std::size_t start, std::siz
   return {corner[start], corner[(start + k) % n], corner[(start + k + 1) % n]};
 }
 
-bool folds(std::span<const Index> corner, std::size_t start, std::span<const Vec3> positions, const Vec3& normal) {
+bool folds(std::span<const Index> corner, std::size_t start, std::span<const Vec3> positions,
+           const Vec3& normal) {
   for (std::size_t k = 1; k + 1 < corner.size(); ++k) {
     const Triangle t = fan_triangle(corner, start, k);
     const Vec3 area = (positions[t[1]] - positions[t[0]]).cross(positions[t[2]] - positions[t[0]]);
@@ -26,11 +28,13 @@ bool folds(std::span<const Index> corner, std::size_t start, std::span<const Vec
 
 }  // namespace
 
-std::optional<Index> unfolded_fan_start(std::span<const Index> corner, std::span<const Vec3> positions) {
+std::optional<Index> unfolded_fan_start(std::span<const Index> corner,
+                                        std::span<const Vec3> positions) {
   if (corner.size() <= 3) return 0;
   Vec3 normal = Vec3::Zero();
   const Vec3 first = positions[corner[0]];
-  for (std::size_t i = 1; i + 1 < corner.size(); ++i) normal += (positions[corner[i]] - first).cross(positions[corner[i + 1]] - first);
+  for (std::size_t i = 1; i + 1 < corner.size(); ++i)
+    normal += (positions[corner[i]] - first).cross(positions[corner[i + 1]] - first);
   const std::size_t starts = corner.size() <= most_searched ? corner.size() : 1;
   for (std::size_t start = 0; start < starts; ++start)
     if (!folds(corner, start, positions, normal)) return static_cast<Index>(start);
@@ -38,7 +42,8 @@ std::optional<Index> unfolded_fan_start(std::span<const Index> corner, std::span
 }
 
 void append_fan(std::span<const Index> corner, Index start, std::vector<Triangle>& triangles) {
-  for (std::size_t k = 1; k + 1 < corner.size(); ++k) triangles.push_back(fan_triangle(corner, static_cast<std::size_t>(start), k));
+  for (std::size_t k = 1; k + 1 < corner.size(); ++k)
+    triangles.push_back(fan_triangle(corner, static_cast<std::size_t>(start), k));
 }
 
 }  // namespace taut

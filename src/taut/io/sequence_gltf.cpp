@@ -1,10 +1,13 @@
-// sequence.glb: glTF 2.0 in one binary file. The first frame is the mesh; each later frame is a morph target, its points' displacements
-// from there. An animation fades linearly from one target to the next. What does not move is a mesh without targets.
+// sequence.glb: glTF 2.0 in one binary file. The first frame is the mesh; each later frame is a
+// morph target, its points' displacements from there. An animation fades linearly from one target
+// to the next. What does not move is a mesh without targets.
 //
-//   weights   at frame k: 1 for target k, 0 for all others: frames x targets numbers for each object
+//   weights   at frame k: 1 for target k, 0 for all others: frames x targets numbers for each
+//             object
 //   (u, v)    glTF counts v from the top: 1 - v is written
 //
-// Source: Khronos Group, "glTF 2.0 Specification", 3.6.2 (accessors), 3.7.2.2 (morph targets), 3.11 (animations), 4.4 (GLB).
+// Source: Khronos Group, "glTF 2.0 Specification", 3.6.2 (accessors), 3.7.2.2 (morph targets), 3.11
+// (animations), 4.4 (GLB).
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
@@ -22,12 +25,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int float_type = 5126, uint_type = 5125, array_buffer = 34962, element_array_buffer = 34963;
+constexpr int float_type = 5126, uint_type = 5125, array_buffer = 34962,
+              element_array_buffer = 34963;
 // Viewers load the whole file into memory, and the format itself ends at 4 GiB.
 constexpr double most_bytes = 512.0 * 1024 * 1024;
 
 double bytes_of(const SequenceObject& object, double frames) {
-  const double mesh = object.points * (3 + 2) * 4.0 + static_cast<double>(object.triangles.size()) * 12.0;
+  const double mesh =
+      object.points * (3 + 2) * 4.0 + static_cast<double>(object.triangles.size()) * 12.0;
   return object.moves ? mesh + (frames - 1) * (object.points * 12.0 + frames * 4.0) : mesh;
 }
 
@@ -37,7 +42,8 @@ void check_size(const SequenceOptions& options, const std::vector<SequenceObject
   if (bytes <= most_bytes) return;
   throw InputError(
       {(options.folder / "sequence.glb").string()},
-      fmt::format("would have {:.0f} MiB for {} frames, more than the {:.0f} MiB that programs open; export every tenth frame or "
+      fmt::format("would have {:.0f} MiB for {} frames, more than the {:.0f} MiB that programs "
+                  "open; export every tenth frame or "
                   "so (--frames FIRST:LAST:STEP), or use the format usd, which has no such limit",
                   bytes / 1048576, options.frames, most_bytes / 1048576));
 }
@@ -57,8 +63,10 @@ class GltfSequence : public SequenceWriter {
       nodes.push_back({{"name", object.stem}, {"mesh", k}});
       scene_nodes.push_back(k);
       if (meshes_[k].targets.empty()) continue;
-      animation["channels"].push_back({{"sampler", animation["samplers"].size()}, {"target", {{"node", k}, {"path", "weights"}}}});
-      animation["samplers"].push_back({{"input", times}, {"output", add_weights()}, {"interpolation", "LINEAR"}});
+      animation["channels"].push_back({{"sampler", animation["samplers"].size()},
+                                       {"target", {{"node", k}, {"path", "weights"}}}});
+      animation["samplers"].push_back(
+          {{"input", times}, {"output", add_weights()}, {"interpolation", "LINEAR"}});
     }
     Json gltf = {{"asset", {{"version", "2.0"}, {"generator", "Taut " TAUT_VERSION}}},
                  {"scene", 0},
@@ -81,11 +89,15 @@ class GltfSequence : public SequenceWriter {
     std::vector<Vec3> base;
   };
 
-  int add_accessor(const std::string& bytes, int component_type, const char* type, std::size_t count, int target) {
+  int add_accessor(const std::string& bytes, int component_type, const char* type,
+                   std::size_t count, int target) {
     Json view = {{"buffer", 0}, {"byteOffset", bytes_.size()}, {"byteLength", bytes.size()}};
     if (target) view["target"] = target;
     bytes_.append(bytes);
-    accessors_.push_back({{"bufferView", views_.size()}, {"componentType", component_type}, {"count", count}, {"type", type}});
+    accessors_.push_back({{"bufferView", views_.size()},
+                          {"componentType", component_type},
+                          {"count", count},
+                          {"type", type}});
     views_.push_back(std::move(view));
     return static_cast<int>(accessors_.size()) - 1;
   }
@@ -124,11 +136,16 @@ class GltfSequence : public SequenceWriter {
     mesh.positions = add_vectors(frame.points);
     std::string indices, texcoords;
     for (const Triangle& t : object.triangles)
-      for (const Index vertex : t) append_little_endian(indices, static_cast<std::uint32_t>(vertex));
-    mesh.indices = add_accessor(indices, uint_type, "SCALAR", 3 * object.triangles.size(), element_array_buffer);
+      for (const Index vertex : t)
+        append_little_endian(indices, static_cast<std::uint32_t>(vertex));
+    mesh.indices = add_accessor(indices, uint_type, "SCALAR", 3 * object.triangles.size(),
+                                element_array_buffer);
     for (const Vec2& uv : object.texcoords)
-      for (const double c : {uv.x(), 1.0 - uv.y()}) append_little_endian(texcoords, static_cast<float>(c));
-    if (!texcoords.empty()) mesh.texcoords = add_accessor(texcoords, float_type, "VEC2", object.texcoords.size(), array_buffer);
+      for (const double c : {uv.x(), 1.0 - uv.y()})
+        append_little_endian(texcoords, static_cast<float>(c));
+    if (!texcoords.empty())
+      mesh.texcoords =
+          add_accessor(texcoords, float_type, "VEC2", object.texcoords.size(), array_buffer);
     mesh.base = frame.points;
     meshes_.push_back(std::move(mesh));
   }
@@ -147,14 +164,18 @@ class GltfSequence : public SequenceWriter {
     if (weights_ >= 0) return weights_;
     std::string bytes;
     for (std::size_t frame = 0; frame < times_.size(); ++frame)
-      for (std::size_t target = 1; target < times_.size(); ++target) append_little_endian(bytes, target == frame ? 1.0F : 0.0F);
-    return weights_ = add_accessor(bytes, float_type, "SCALAR", times_.size() * (times_.size() - 1), 0);
+      for (std::size_t target = 1; target < times_.size(); ++target)
+        append_little_endian(bytes, target == frame ? 1.0F : 0.0F);
+    return weights_ =
+               add_accessor(bytes, float_type, "SCALAR", times_.size() * (times_.size() - 1), 0);
   }
 
   static Json mesh_json(const SequenceObject& object, const Mesh& mesh) {
     Json attributes = {{"POSITION", mesh.positions}};
     if (mesh.texcoords >= 0) attributes["TEXCOORD_0"] = mesh.texcoords;
-    Json primitive = {{"attributes", attributes}, {"indices", mesh.indices}, {"material", object.is_cloth ? 0 : 1}};
+    Json primitive = {{"attributes", attributes},
+                      {"indices", mesh.indices},
+                      {"material", object.is_cloth ? 0 : 1}};
     for (const int target : mesh.targets) primitive["targets"].push_back({{"POSITION", target}});
     Json json = {{"name", object.stem}, {"primitives", Json::array({primitive})}};
     if (!mesh.targets.empty()) json["weights"] = std::vector<int>(mesh.targets.size(), 0);
@@ -164,16 +185,21 @@ class GltfSequence : public SequenceWriter {
   static Json materials() {
     const auto material = [](const char* name, std::vector<double> colour, bool double_sided) {
       return Json{{"name", name},
-                  {"pbrMetallicRoughness", {{"baseColorFactor", std::move(colour)}, {"metallicFactor", 0.0}, {"roughnessFactor", 0.8}}},
+                  {"pbrMetallicRoughness",
+                   {{"baseColorFactor", std::move(colour)},
+                    {"metallicFactor", 0.0},
+                    {"roughnessFactor", 0.8}}},
                   {"doubleSided", double_sided}};
     };
-    return Json::array({material("cloth", {0.04, 0.19, 0.51, 1.0}, true), material("solid", {0.57, 0.55, 0.52, 1.0}, false)});
+    return Json::array({material("cloth", {0.04, 0.19, 0.51, 1.0}, true),
+                        material("solid", {0.57, 0.55, 0.52, 1.0}, false)});
   }
 
   void write_glb(const Json& gltf) {
     std::string json = gltf.dump();
     json.append((4 - json.size() % 4) % 4, ' ');
-    const auto data_size = static_cast<std::uint32_t>(bytes_.size());  // a multiple of 4: all arrays are
+    // a multiple of 4: all arrays are
+    const auto data_size = static_cast<std::uint32_t>(bytes_.size());
     std::string head = "glTF", data_head;
     append_little_endian(head, std::uint32_t{2});
     append_little_endian(head, static_cast<std::uint32_t>(12 + 8 + json.size() + 8) + data_size);
@@ -194,7 +220,8 @@ class GltfSequence : public SequenceWriter {
 
 }  // namespace
 
-std::unique_ptr<SequenceWriter> make_gltf_sequence(SequenceOptions options, std::vector<SequenceObject> objects) {
+std::unique_ptr<SequenceWriter> make_gltf_sequence(SequenceOptions options,
+                                                   std::vector<SequenceObject> objects) {
   check_size(options, objects);
   return std::make_unique<GltfSequence>(std::move(options), std::move(objects));
 }

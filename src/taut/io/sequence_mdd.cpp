@@ -1,6 +1,7 @@
 // STEM.obj has the mesh at the first frame, STEM.mdd moves it; what does not move has no cache.
 //
-//   MDD, all big-endian:  int32 frames, int32 points, float time of each frame (s), then for each frame points x 3 float32
+//   MDD, all big-endian:  int32 frames, int32 points, float time of each frame (s), then for each
+//                         frame points x 3 float32
 //
 // Source: the LightWave MDD format as Blender's io_shape_mdd writes it.
 #include <ostream>
@@ -55,7 +56,8 @@ class MddSequence : public SequenceWriter {
 
 }  // namespace
 
-std::unique_ptr<SequenceWriter> make_mdd_sequence(SequenceOptions options, std::vector<SequenceObject> objects) {
+std::unique_ptr<SequenceWriter> make_mdd_sequence(SequenceOptions options,
+                                                  std::vector<SequenceObject> objects) {
   return std::make_unique<MddSequence>(std::move(options), std::move(objects));
 }
 

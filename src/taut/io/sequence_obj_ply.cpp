@@ -9,14 +9,19 @@ namespace taut::detail {
 
 namespace {
 
-void write_float_obj(const std::filesystem::path& path, const TriangleMesh& mesh) { write_obj(path, mesh, ObjDigits::of_float); }
+void write_float_obj(const std::filesystem::path& path, const TriangleMesh& mesh) {
+  write_obj(path, mesh, ObjDigits::of_float);
+}
 
 using WriteMesh = void(const std::filesystem::path& path, const TriangleMesh& mesh);
 
 class MeshSequence : public SequenceWriter {
  public:
-  MeshSequence(SequenceOptions options, std::vector<SequenceObject> objects, WriteMesh* write, const char* extension)
-      : SequenceWriter(std::move(options), std::move(objects)), write_(write), extension_(extension) {}
+  MeshSequence(SequenceOptions options, std::vector<SequenceObject> objects, WriteMesh* write,
+               const char* extension)
+      : SequenceWriter(std::move(options), std::move(objects)),
+        write_(write),
+        extension_(extension) {}
   void finish() override {}
 
  private:
@@ -24,7 +29,8 @@ class MeshSequence : public SequenceWriter {
     for (std::size_t k = 0; k < frame.size(); ++k) {
       const SequenceObject& object = objects()[k];
       if (object.moves)
-        write_(file(fmt::format("{}_{:06}{}", object.stem, number, extension_)), mesh_at(object, frame[k]));
+        write_(file(fmt::format("{}_{:06}{}", object.stem, number, extension_)),
+               mesh_at(object, frame[k]));
       else if (is_first())
         write_(file(object.stem + extension_), mesh_at(object, frame[k]));
     }
@@ -36,11 +42,14 @@ class MeshSequence : public SequenceWriter {
 
 }  // namespace
 
-std::unique_ptr<SequenceWriter> make_obj_sequence(SequenceOptions options, std::vector<SequenceObject> objects) {
-  return std::make_unique<MeshSequence>(std::move(options), std::move(objects), write_float_obj, ".obj");
+std::unique_ptr<SequenceWriter> make_obj_sequence(SequenceOptions options,
+                                                  std::vector<SequenceObject> objects) {
+  return std::make_unique<MeshSequence>(std::move(options), std::move(objects), write_float_obj,
+                                        ".obj");
 }
 
-std::unique_ptr<SequenceWriter> make_ply_sequence(SequenceOptions options, std::vector<SequenceObject> objects) {
+std::unique_ptr<SequenceWriter> make_ply_sequence(SequenceOptions options,
+                                                  std::vector<SequenceObject> objects) {
   return std::make_unique<MeshSequence>(std::move(options), std::move(objects), write_ply, ".ply");
 }
 

@@ -24,7 +24,8 @@ class Pc2Sequence : public SequenceWriter {
       if (is_first()) {
         write_obj(file(object.stem + ".obj"), mesh_at(object, frame[k]), ObjDigits::of_float);
         if (object.moves)
-          caches_[k] = std::make_unique<Pc2Writer>(file(object.stem + ".pc2"), object.points, static_cast<float>(number),
+          caches_[k] = std::make_unique<Pc2Writer>(file(object.stem + ".pc2"), object.points,
+                                                   static_cast<float>(number),
                                                    static_cast<float>(options().frame_stride));
       }
       if (caches_[k]) caches_[k]->add_sample(frame[k].points);
@@ -36,7 +37,8 @@ class Pc2Sequence : public SequenceWriter {
 
 }  // namespace
 
-std::unique_ptr<SequenceWriter> make_pc2_sequence(SequenceOptions options, std::vector<SequenceObject> objects) {
+std::unique_ptr<SequenceWriter> make_pc2_sequence(SequenceOptions options,
+                                                  std::vector<SequenceObject> objects) {
   return std::make_unique<Pc2Sequence>(std::move(options), std::move(objects));
 }
 

@@ -1,7 +1,9 @@
-// sequence.usda: USD as text. One Mesh prim an object under /World; topology and texture coordinates once, points and extent at every
-// frame, for what does not move once. The time code is the frame's number, timeCodesPerSecond makes seconds of it.
+// sequence.usda: USD as text. One Mesh prim an object under /World; topology and texture
+// coordinates once, points and extent at every frame, for what does not move once. The time code is
+// the frame's number, timeCodesPerSecond makes seconds of it.
 //
-// Source: OpenUSD 24, "USD file format: text", schemas UsdGeomMesh, UsdGeomPointBased, UsdGeomGprim.
+// Source: OpenUSD 24, "USD file format: text", schemas UsdGeomMesh, UsdGeomPointBased,
+// UsdGeomGprim.
 #include <Eigen/Geometry>
 #include <ostream>
 
@@ -18,7 +20,8 @@ constexpr const char* indent = "        ";
 
 template <class Vector>
 void append_tuple(std::string& text, const Vector& v) {
-  for (Eigen::Index i = 0; i < v.size(); ++i) append_decimal(text += i == 0 ? "(" : ", ", static_cast<float>(v[i]));
+  for (Eigen::Index i = 0; i < v.size(); ++i)
+    append_decimal(text += i == 0 ? "(" : ", ", static_cast<float>(v[i]));
   text += ')';
 }
 
@@ -95,10 +98,12 @@ class UsdSequence : public SequenceWriter {
       return line + "\n";
     };
     const double rate = options().frame_interval > 0 ? 1.0 / options().frame_interval : 24.0;
-    return "#usda 1.0\n(\n    defaultPrim = \"World\"\n    doc = " + quoted(options().title) + "\n" + entry("endTimeCode", last_frame_) +
-           entry("framesPerSecond", rate) + entry("metersPerUnit", options().metres_per_unit) +
-           entry("startTimeCode", options().first_frame) + entry("timeCodesPerSecond", rate) + "    upAxis = \"" +
-           (options().up == UpAxis::y ? "Y" : "Z") + "\"\n)\n\ndef Xform \"World\" (\n    kind = \"component\"\n)\n{\n";
+    return "#usda 1.0\n(\n    defaultPrim = \"World\"\n    doc = " + quoted(options().title) +
+           "\n" + entry("endTimeCode", last_frame_) + entry("framesPerSecond", rate) +
+           entry("metersPerUnit", options().metres_per_unit) +
+           entry("startTimeCode", options().first_frame) + entry("timeCodesPerSecond", rate) +
+           "    upAxis = \"" + (options().up == UpAxis::y ? "Y" : "Z") +
+           "\"\n)\n\ndef Xform \"World\" (\n    kind = \"component\"\n)\n{\n";
   }
 
   static void write_prim(std::ostream& out, const SequenceObject& object, Prim& prim) {
@@ -121,7 +126,8 @@ class UsdSequence : public SequenceWriter {
       samples("point3f[] points", [&] { prim.frames->copy_to(out); });
     else
       out << indent << "point3f[] points = " << prim.points << '\n';
-    out << indent << "color3f[] primvars:displayColor = [" << (object.is_cloth ? "(0.04, 0.19, 0.51)" : "(0.57, 0.55, 0.52)") << "]\n";
+    out << indent << "color3f[] primvars:displayColor = ["
+        << (object.is_cloth ? "(0.04, 0.19, 0.51)" : "(0.57, 0.55, 0.52)") << "]\n";
     if (!object.texcoords.empty())
       out << indent << "texCoord2f[] primvars:st = " << array_of(object.texcoords) << " (\n"
           << indent << "    interpolation = \"vertex\"\n"
@@ -135,7 +141,8 @@ class UsdSequence : public SequenceWriter {
 
 }  // namespace
 
-std::unique_ptr<SequenceWriter> make_usd_sequence(SequenceOptions options, std::vector<SequenceObject> objects) {
+std::unique_ptr<SequenceWriter> make_usd_sequence(SequenceOptions options,
+                                                  std::vector<SequenceObject> objects) {
   return std::make_unique<UsdSequence>(std::move(options), std::move(objects));
 }
 

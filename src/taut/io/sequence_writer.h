@@ -1,14 +1,18 @@
 #pragma once
 // Moving meshes as files of other programs: the seam behind `taut export`.
 //
-//   object   a cloth or a solid: triangles, texture coordinates and number of points never change, only the points move
+//   object   a cloth or a solid: triangles, texture coordinates and number of points never change,
+//            only the points move
 //   frame    points and fields of every object at one time; in the order of the objects
-//   stem     an object's name in files and inside them: letters, digits and _, no two alike (set by make_sequence_writer)
+//   stem     an object's name in files and inside them: letters, digits and _, no two alike (set by
+//            make_sequence_writer)
 //
-// A format is a class derived from SequenceWriter in a source of its own, a line in the list of sequence_formats.cpp with its declaration
-// in sequence_formats.h, and a test. Coordinates arrive in the units and axes they shall have in the file; values are rounded to float32.
-// Every file is whole or absent: it appears under its name when it is complete, some formats' files only in finish(). A writer destroyed
-// before finish() leaves no half file. Throws InputError naming the file when it cannot be written.
+// A format is a class derived from SequenceWriter in a source of its own, a line in the list of
+// sequence_formats.cpp with its declaration in sequence_formats.h, and a test. Coordinates arrive
+// in the units and axes they shall have in the file; values are rounded to float32. Every file is
+// whole or absent: it appears under its name when it is complete, some formats' files only in
+// finish(). A writer destroyed before finish() leaves no half file. Throws InputError naming the
+// file when it cannot be written.
 
 #include <filesystem>
 #include <memory>
@@ -63,7 +67,8 @@ class SequenceWriter {
   SequenceWriter(const SequenceWriter&) = delete;
   SequenceWriter& operator=(const SequenceWriter&) = delete;
 
-  // `number`: of the frame, growing from call to call; its time is number * frame_interval. One entry of `frame` an object.
+  // `number`: of the frame, growing from call to call; its time is number * frame_interval. One
+  // entry of `frame` an object.
   void add_frame(int number, std::span<const ObjectFrame> frame);
   // At least one frame must have been added.
   virtual void finish() = 0;
@@ -88,13 +93,15 @@ struct SequenceFormat {
   const char* name;
   const char* description;  // what files it makes
   UpAxis usual_up;
-  std::unique_ptr<SequenceWriter> (*make)(SequenceOptions options, std::vector<SequenceObject> objects);
+  std::unique_ptr<SequenceWriter> (*make)(SequenceOptions options,
+                                          std::vector<SequenceObject> objects);
 };
 
 std::span<const SequenceFormat> sequence_formats();
 // Throws InputError for a name that is none of sequence_formats().
 const SequenceFormat& sequence_format(const std::string& name);
-std::unique_ptr<SequenceWriter> make_sequence_writer(const SequenceFormat& format, SequenceOptions options,
+std::unique_ptr<SequenceWriter> make_sequence_writer(const SequenceFormat& format,
+                                                     SequenceOptions options,
                                                      std::vector<SequenceObject> objects);
 
 }  // namespace taut

@@ -1,5 +1,6 @@
 #pragma once
-// Appends the shortest decimal that reads back to the same double (at most 17 significant digits) or float (9), whatever the locale.
+// Appends the shortest decimal that reads back to the same double (at most 17 significant digits)
+// or float (9), whatever the locale.
 
 #include <charconv>
 #include <concepts>

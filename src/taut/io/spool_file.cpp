@@ -16,16 +16,19 @@ namespace taut {
 
 void SpoolFile::fail() const {
   const std::string reason = errno ? std::strerror(errno) : "unknown reason";
-  throw InputError({folder_.string()}, "cannot be written: " + reason + "; check the folder's permissions and free space");
+  throw InputError({folder_.string()}, "cannot be written: " + reason +
+                                           "; check the folder's permissions and free space");
 }
 
 namespace {
 
-// A file without a name, which nothing is left of however the program ends; where the file system has no such thing, one whose name is gone
-// at once.
+// A file without a name, which nothing is left of however the program ends; where the file system
+// has no such thing, one whose name is gone at once.
 int open_nameless(const std::filesystem::path& folder) {
 #ifdef O_TMPFILE
-  if (const int descriptor = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600); descriptor >= 0) return descriptor;
+  if (const int descriptor = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+      descriptor >= 0)
+    return descriptor;
 #endif
   std::string name = (folder / ".spool-XXXXXX").string();
   const int descriptor = ::mkstemp(name.data());
@@ -60,7 +63,8 @@ void SpoolFile::copy_to(std::ostream& out) {
   errno = 0;
   if (std::fflush(file_) != 0 || std::fseek(file_, 0, SEEK_SET) != 0) fail();
   char piece[1 << 16];
-  for (std::size_t count; (count = std::fread(piece, 1, sizeof piece, file_)) > 0;) out.write(piece, static_cast<std::streamsize>(count));
+  for (std::size_t count; (count = std::fread(piece, 1, sizeof piece, file_)) > 0;)
+    out.write(piece, static_cast<std::streamsize>(count));
   if (std::ferror(file_) || std::fseek(file_, 0, SEEK_END) != 0) fail();
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// Bytes put aside on disk until it is known what stands before them in a file. The file has no name, so that nothing is left of it however
-// the program ends.
+// Bytes put aside on disk until it is known what stands before them in a file. The file has no
+// name, so that nothing is left of it however the program ends.
 
 #include <cstdio>
 #include <filesystem>
@@ -11,7 +11,8 @@ namespace taut {
 
 class SpoolFile {
  public:
-  // In `folder`, which is made if missing. Throws InputError when that cannot be written; so do the others.
+  // In `folder`, which is made if missing. Throws InputError when that cannot be written; so do the
+  // others.
   explicit SpoolFile(const std::filesystem::path& folder);
   ~SpoolFile();
   SpoolFile(const SpoolFile&) = delete;

@@ -15,7 +15,9 @@ namespace {
 // Of the scale sqrt(|a_ii a_jj|), which bounds |a_ij| in a positive definite matrix.
 constexpr double symmetry_tolerance = 1e-10;
 
-std::string at(Index row, Index column) { return "(" + std::to_string(Offset{row} + 1) + ", " + std::to_string(Offset{column} + 1) + ")"; }
+std::string at(Index row, Index column) {
+  return "(" + std::to_string(Offset{row} + 1) + ", " + std::to_string(Offset{column} + 1) + ")";
+}
 
 std::string number(double value) {
   char text[32];
@@ -25,11 +27,15 @@ std::string number(double value) {
 
 class SystemMatrixBuilder {
  public:
-  SystemMatrixBuilder(const MatrixMarket& matrix, const std::string& name) : name_(name), entries_(matrix.entries) {
+  SystemMatrixBuilder(const MatrixMarket& matrix, const std::string& name)
+      : name_(name), entries_(matrix.entries) {
     if (matrix.rows != matrix.columns || matrix.rows == 0)
-      fail("has " + std::to_string(matrix.rows) + " rows and " + std::to_string(matrix.columns) + " columns, a square matrix was expected");
+      fail("has " + std::to_string(matrix.rows) + " rows and " + std::to_string(matrix.columns) +
+           " columns, a square matrix was expected");
     if (matrix.declared == MatrixSymmetry::skew_symmetric)
-      fail("is skew-symmetric, so its diagonal is zero; a symmetric positive definite matrix was expected");
+      fail(
+          "is skew-symmetric, so its diagonal is zero; a symmetric positive definite matrix was "
+          "expected");
     rows_ = matrix.rows;
     if (matrix.dense) take_dense(matrix.values);
   }
@@ -38,7 +44,8 @@ class SystemMatrixBuilder {
     check_finite();
     check_diagonal();
     check_symmetry();
-    std::vector<Index> row_start(static_cast<std::size_t>(rows_) + 1, 0), column, dof_start(row_start.size());
+    std::vector<Index> row_start(static_cast<std::size_t>(rows_) + 1, 0), column,
+        dof_start(row_start.size());
     std::iota(dof_start.begin(), dof_start.end(), 0);
     for (const MatrixEntry& entry : entries_) {
       ++row_start[entry.row + 1];
@@ -59,16 +66,19 @@ class SystemMatrixBuilder {
     for (std::size_t row = 0; row < n; ++row)
       for (std::size_t column = 0; column < n; ++column)
         if (values[column * n + row] != 0)
-          entries_.push_back({static_cast<Index>(row), static_cast<Index>(column), values[column * n + row]});
+          entries_.push_back(
+              {static_cast<Index>(row), static_cast<Index>(column), values[column * n + row]});
   }
 
   void check_finite() const {
     for (const MatrixEntry& entry : entries_)
-      if (!std::isfinite(entry.value)) fail("entry " + at(entry.row, entry.column) + " is not finite");
+      if (!std::isfinite(entry.value))
+        fail("entry " + at(entry.row, entry.column) + " is not finite");
   }
 
   void check_diagonal() {
-    // Before any memory for `rows_` rows is taken: a header may announce millions of rows and hold none.
+    // Before any memory for `rows_` rows is taken: a header may announce millions of rows and hold
+    // none.
     std::vector<double> found;
     for (const MatrixEntry& entry : entries_) {
       if (entry.row != entry.column) continue;
@@ -82,11 +92,14 @@ class SystemMatrixBuilder {
     diagonal_ = std::move(found);
   }
 
-  // Stores (a_ij + a_ji) / 2 in both places after checking that they agree; exact where they are equal.
+  // Stores (a_ij + a_ji) / 2 in both places after checking that they agree; exact where they are
+  // equal.
   void check_symmetry() {
     std::vector<MatrixEntry> mirrored(entries_);
     for (MatrixEntry& entry : mirrored) std::swap(entry.row, entry.column);
-    const auto before = [](const MatrixEntry& a, const MatrixEntry& b) { return std::pair(a.row, a.column) < std::pair(b.row, b.column); };
+    const auto before = [](const MatrixEntry& a, const MatrixEntry& b) {
+      return std::pair(a.row, a.column) < std::pair(b.row, b.column);
+    };
     std::sort(mirrored.begin(), mirrored.end(), before);
     std::vector<MatrixEntry> mean;
     mean.reserve(entries_.size());
@@ -103,10 +116,12 @@ class SystemMatrixBuilder {
   }
 
   MatrixEntry mean_of(const MatrixEntry& place, double value, double mirror) const {
-    const double scale = std::sqrt(std::abs(diagonal_[place.row])) * std::sqrt(std::abs(diagonal_[place.column]));
+    const double scale =
+        std::sqrt(std::abs(diagonal_[place.row])) * std::sqrt(std::abs(diagonal_[place.column]));
     if (std::abs(value - mirror) > symmetry_tolerance * scale)
-      fail("is not symmetric: entry " + at(place.row, place.column) + " is " + number(value) + ", but entry " +
-           at(place.column, place.row) + " is " + number(mirror) + "; a symmetric positive definite matrix was expected");
+      fail("is not symmetric: entry " + at(place.row, place.column) + " is " + number(value) +
+           ", but entry " + at(place.column, place.row) + " is " + number(mirror) +
+           "; a symmetric positive definite matrix was expected");
     return {place.row, place.column, value == mirror ? value : 0.5 * value + 0.5 * mirror};
   }
 
@@ -118,6 +133,8 @@ class SystemMatrixBuilder {
 
 }  // namespace
 
-BlockCsr to_system_matrix(const MatrixMarket& matrix, const std::string& name) { return SystemMatrixBuilder(matrix, name).build(); }
+BlockCsr to_system_matrix(const MatrixMarket& matrix, const std::string& name) {
+  return SystemMatrixBuilder(matrix, name).build();
+}
 
 }  // namespace taut

@@ -16,7 +16,8 @@ std::string_view without_plus(std::string_view word) {
   return plus ? word.substr(1) : word;
 }
 
-// Whether a decimal number outside the range of double is beyond its large end: the sign of its decimal exponent.
+// Whether a decimal number outside the range of double is beyond its large end: the sign of its
+// decimal exponent.
 bool is_huge(std::string_view word) {
   const std::size_t exponent_mark = std::min(word.find_first_of("eE"), word.size());
   const std::string_view mantissa = word.substr(0, exponent_mark);
@@ -26,7 +27,8 @@ bool is_huge(std::string_view word) {
   if (exponent_mark < word.size()) {
     std::int64_t exponent = 0;
     const std::string_view digits = without_plus(word.substr(exponent_mark + 1));
-    if (std::from_chars(digits.data(), digits.data() + digits.size(), exponent).ec == std::errc::result_out_of_range)
+    if (std::from_chars(digits.data(), digits.data() + digits.size(), exponent).ec ==
+        std::errc::result_out_of_range)
       return digits[0] != '-';
     power += exponent;
   }
@@ -105,7 +107,9 @@ std::string_view TextCursor::word() {
   word_line_ = line_;
   word_column_ = static_cast<int>(position_ - line_start_) + 1;
   const std::size_t begin = position_;
-  while (!at_end() && !is_blank(text_[position_]) && line_end_length(position_) == 0 && !continuation(position_)) ++position_;
+  while (!at_end() && !is_blank(text_[position_]) && line_end_length(position_) == 0 &&
+         !continuation(position_))
+    ++position_;
   return text_.substr(begin, position_ - begin);
 }
 

@@ -1,7 +1,9 @@
 #pragma once
-// Walks through a text file word by word and knows the line and column, so that every complaint can name its place.
+// Walks through a text file word by word and knows the line and column, so that every complaint can
+// name its place.
 //
-// Lines end with LF, CRLF or CR; blanks are spaces, tabs, vertical tabs and form feeds. Numbers do not depend on the locale.
+// Lines end with LF, CRLF or CR; blanks are spaces, tabs, vertical tabs and form feeds. Numbers do
+// not depend on the locale.
 
 #include <cstddef>
 #include <cstdint>
@@ -17,15 +19,16 @@ std::string in_quotes(std::string_view word);
 
 enum class NumberFault { none, not_a_number, too_large };
 
-// The whole word as a decimal number; a leading + is allowed, "nan" and "inf" are accepted, and what is too small becomes 0.
+// The whole word as a decimal number; a leading + is allowed, "nan" and "inf" are accepted, and
+// what is too small becomes 0.
 NumberFault parse_number(std::string_view word, double& value);
 // The whole word as an integer.
 NumberFault parse_integer(std::string_view word, std::int64_t& value);
 
 class TextCursor {
  public:
-  // With `continued_lines`, a backslash just before a line end joins the next line to this one (OBJ).
-  // The text must outlive the cursor.
+  // With `continued_lines`, a backslash just before a line end joins the next line to this one
+  // (OBJ). The text must outlive the cursor.
   TextCursor(std::string file, std::string_view text, bool continued_lines);
 
   bool at_end() const { return position_ >= text_.size(); }
@@ -33,10 +36,12 @@ class TextCursor {
   bool at_line_end();
   // The next word of this line; empty at its end.
   std::string_view word();
-  // Goes to the next line; skip_comment before it keeps a backslash at the end of a comment from joining lines.
+  // Goes to the next line; skip_comment before it keeps a backslash at the end of a comment from
+  // joining lines.
   void next_line();
   void skip_comment();
-  // A line with nothing but blanks, or a comment that begins with `mark`, is passed over; false when none but such are left.
+  // A line with nothing but blanks, or a comment that begins with `mark`, is passed over; false
+  // when none but such are left.
   bool find_content(char mark);
 
   // Where the last word began (or where one was missing).
@@ -49,7 +54,9 @@ class TextCursor {
  private:
   void skip_blanks();
   std::size_t line_end_length(std::size_t at) const;
-  bool continuation(std::size_t at) const { return continued_lines_ && text_[at] == '\\' && line_end_length(at + 1) > 0; }
+  bool continuation(std::size_t at) const {
+    return continued_lines_ && text_[at] == '\\' && line_end_length(at + 1) > 0;
+  }
   void pass_line_end(std::size_t length);
 
   std::string file_;

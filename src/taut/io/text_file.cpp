@@ -12,7 +12,9 @@ namespace {
 // A few bytes of gzip can claim terabytes; beyond this the file has to be unpacked by its owner.
 constexpr std::size_t largest_unpacked = std::size_t{1} << 29;
 
-bool starts_with(std::string_view bytes, std::string_view mark) { return bytes.substr(0, mark.size()) == mark; }
+bool starts_with(std::string_view bytes, std::string_view mark) {
+  return bytes.substr(0, mark.size()) == mark;
+}
 
 class Unpacker {
  public:
@@ -51,9 +53,13 @@ std::string unpack(const std::string& file, const std::string& packed) {
   int result = Z_OK;
   while (result == Z_OK) {
     result = unpacker.unpack_some(text);
-    if (text.size() > largest_unpacked) throw InputError({file}, "unpacks to more than 512 MiB; unpack it with gunzip and read that file");
+    if (text.size() > largest_unpacked)
+      throw InputError({file},
+                       "unpacks to more than 512 MiB; unpack it with gunzip and read that file");
   }
-  if (result != Z_STREAM_END) throw InputError({file}, "is a gzip file that does not unpack (damaged or cut short); fetch it again");
+  if (result != Z_STREAM_END)
+    throw InputError({file},
+                     "is a gzip file that does not unpack (damaged or cut short); fetch it again");
   return text;
 }
 
@@ -67,11 +73,15 @@ std::string read_unpacked_file(const std::filesystem::path& path) {
 std::string read_text_file(const std::filesystem::path& path) {
   const std::string file = path.string();
   std::string text = read_unpacked_file(path);
-  if (starts_with(text, "\xfe\xff") || starts_with(text, "\xff\xfe") || starts_with(text, std::string_view("\0\0\xfe\xff", 4)))
-    throw InputError({file, 1}, "is UTF-16 or UTF-32 text, UTF-8 was expected; save it as UTF-8 (iconv -f UTF-16 -t UTF-8)");
+  if (starts_with(text, "\xfe\xff") || starts_with(text, "\xff\xfe") ||
+      starts_with(text, std::string_view("\0\0\xfe\xff", 4)))
+    throw InputError({file, 1},
+                     "is UTF-16 or UTF-32 text, UTF-8 was expected; save it as UTF-8 (iconv -f "
+                     "UTF-16 -t UTF-8)");
   const std::size_t zero = text.find('\0');
   if (zero != std::string::npos)
-    throw InputError({file}, "is not a text file: byte " + std::to_string(zero + 1) + " is zero (binary data or UTF-16 text)");
+    throw InputError({file}, "is not a text file: byte " + std::to_string(zero + 1) +
+                                 " is zero (binary data or UTF-16 text)");
   if (starts_with(text, "\xef\xbb\xbf")) text.erase(0, 3);
   return text;
 }

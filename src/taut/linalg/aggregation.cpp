@@ -8,7 +8,8 @@ Aggregation aggregate(const WeightedGraph& graph) {
   std::vector<Index>& group = result.group;
   group.assign(static_cast<std::size_t>(n), -1);
   const auto neighbours = [&](Index i, auto visit) {
-    for (Index k = graph.start[i]; k < graph.start[i + 1]; ++k) visit(graph.neighbour[k], graph.weight[k]);
+    for (Index k = graph.start[i]; k < graph.start[i + 1]; ++k)
+      visit(graph.neighbour[k], graph.weight[k]);
   };
   for (Index i = 0; i < n; ++i) {
     bool free = group[i] < 0;

@@ -1,5 +1,6 @@
 #pragma once
-// Groups of neighbouring nodes for algebraic multigrid (Vaněk, Mandel & Brezina 1996, algorithm 5.1):
+// Groups of neighbouring nodes for algebraic multigrid (Vaněk, Mandel & Brezina 1996, algorithm
+// 5.1):
 //
 //   1. a node whose neighbours are all free founds a group with them, in the order of the nodes
 //   2. a node left over joins the group of its strongest neighbour of those grouped in 1
@@ -14,7 +15,8 @@
 
 namespace taut {
 
-// A graph by rows; weight: how strongly a neighbour is coupled. A node without neighbours becomes a group of its own.
+// A graph by rows; weight: how strongly a neighbour is coupled. A node without neighbours becomes a
+// group of its own.
 struct WeightedGraph {
   std::vector<Index> start, neighbour;
   std::vector<double> weight;

@@ -1,6 +1,7 @@
 #pragma once
-// One level of smoothed aggregation with its way to the next: nodes of n unknowns here, of c below. See linalg/smoothed_aggregation.h.
-// Blocks of nodes with fewer unknowns are padded: zeros, ones on the diagonal.
+// One level of smoothed aggregation with its way to the next: nodes of n unknowns here, of c below.
+// See linalg/smoothed_aggregation.h. Blocks of nodes with fewer unknowns are padded: zeros, ones on
+// the diagonal.
 
 #include <Eigen/Cholesky>
 #include <cmath>
@@ -30,7 +31,8 @@ struct AmgLevel {
   std::size_t size() const { return static_cast<std::size_t>(a.rows()) * n; }
   Offset bytes() const {
     return a.bytes() + prolongator.bytes() + restrictor.bytes() +
-           static_cast<Offset>(inverse_diagonal.size() * sizeof(Square) + modes.size() * sizeof(Modes) + 3 * size() * sizeof(double));
+           static_cast<Offset>(inverse_diagonal.size() * sizeof(Square) +
+                               modes.size() * sizeof(Modes) + 3 * size() * sizeof(double));
   }
 
   // After `a` is filled. The node whose diagonal block is not positive definite, or -1.
@@ -42,7 +44,8 @@ struct AmgLevel {
         if (a.column[k] != i) continue;
         const Eigen::LLT<Eigen::Matrix<double, n, n>> llt(a.values[k]);
         if (llt.info() != Eigen::Success || !a.values[k].allFinite()) return i;
-        const Eigen::Matrix<double, n, n> inverse = llt.solve(Eigen::Matrix<double, n, n>::Identity());
+        const Eigen::Matrix<double, n, n> inverse =
+            llt.solve(Eigen::Matrix<double, n, n>::Identity());
         inverse_diagonal[i] = 0.5 * (inverse + inverse.transpose());
       }
     lambda = largest_eigenvalue();
@@ -55,7 +58,8 @@ struct AmgLevel {
     parallel_for(nodes(), 1024, [&](Index begin, Index end) {
       for (Index i = begin; i < end; ++i) {
         const std::ptrdiff_t at = n * static_cast<std::ptrdiff_t>(i);
-        Eigen::Map<Vector>(y + at).noalias() = inverse_diagonal[i] * Eigen::Map<const Vector>(x + at);
+        Eigen::Map<Vector>(y + at).noalias() =
+            inverse_diagonal[i] * Eigen::Map<const Vector>(x + at);
       }
     });
   }
@@ -64,7 +68,8 @@ struct AmgLevel {
   double largest_eigenvalue() const {
     constexpr int iterations = 15;
     std::uint32_t state = 1;
-    for (double& value : step) value = (state = 1664525u * state + 1013904223u) / 4294967296.0 - 0.5;
+    for (double& value : step)
+      value = (state = 1664525u * state + 1013904223u) / 4294967296.0 - 0.5;
     double found = 1.0;
     for (int k = 0; k < iterations; ++k) {
       const double before = norm(step);
@@ -77,8 +82,10 @@ struct AmgLevel {
     return found;
   }
 
-  // x += q(D⁻¹A) D⁻¹ (b - A x), q the Chebyshev smoother (Saad, "Iterative Methods", algorithm 12.1). x_is_zero saves the first product.
-  void smooth(const AmgOptions& options, std::span<const double> b, std::span<double> x, bool x_is_zero) const {
+  // x += q(D⁻¹A) D⁻¹ (b - A x), q the Chebyshev smoother (Saad, "Iterative Methods", algorithm
+  // 12.1). x_is_zero saves the first product.
+  void smooth(const AmgOptions& options, std::span<const double> b, std::span<double> x,
+              bool x_is_zero) const {
     const double high = 1.1 * lambda, low = lambda / options.smoother_range;
     const double middle = 0.5 * (high + low), half = 0.5 * (high - low), sigma = middle / half;
     std::copy(b.begin(), b.end(), residual.begin());
@@ -95,7 +102,8 @@ struct AmgLevel {
       add_scaled(-1.0, scratch, residual);
       jacobi(residual.data(), scratch.data());
       const double next = 1.0 / (2.0 * sigma - rho);
-      for (std::size_t i = 0; i < step.size(); ++i) step[i] = next * rho * step[i] + 2.0 * next / half * scratch[i];
+      for (std::size_t i = 0; i < step.size(); ++i)
+        step[i] = next * rho * step[i] + 2.0 * next / half * scratch[i];
       add_scaled(1.0, step, x);
       rho = next;
     }
@@ -112,15 +120,18 @@ struct AmgLevel {
       for (Index k = a.start[i]; k < a.start[i + 1]; ++k) {
         const Index j = a.column[k];
         const double weight = a.values[k].norm() / std::sqrt(size_of[i] * size_of[j]);
-        if (j != i && weight > 0.0 && weight >= strength) result.neighbour.push_back(j), result.weight.push_back(weight);
+        if (j != i && weight > 0.0 && weight >= strength)
+          result.neighbour.push_back(j), result.weight.push_back(weight);
       }
       result.start.push_back(static_cast<Index>(result.neighbour.size()));
     }
     return result;
   }
 
-  // P̂ and the coarse level's modes: modes = P̂ coarse_modes, the columns of P̂ orthonormal or zero.
-  BlockSparse<n, c> tentative(const Aggregation& groups, std::vector<CoarseModes>& coarse_modes) const {
+  // P̂ and the coarse level's modes: modes = P̂ coarse_modes, the columns of P̂ orthonormal or
+  // zero.
+  BlockSparse<n, c> tentative(const Aggregation& groups,
+                              std::vector<CoarseModes>& coarse_modes) const {
     BlockSparse<n, c> result;
     result.columns = groups.groups;
     result.column = groups.group;
@@ -129,12 +140,15 @@ struct AmgLevel {
     coarse_modes.assign(static_cast<std::size_t>(groups.groups), CoarseModes::Zero());
     std::vector<std::vector<Index>> members(static_cast<std::size_t>(groups.groups));
     for (Index i = 0; i < nodes(); ++i) members[groups.group[i]].push_back(i);
-    for (Index g = 0; g < groups.groups; ++g) orthonormalize(members[g], result.values, coarse_modes[g]);
+    for (Index g = 0; g < groups.groups; ++g)
+      orthonormalize(members[g], result.values, coarse_modes[g]);
     return result;
   }
 
-  // Modified Gram-Schmidt, twice, so that what is left of a nearly dependent column is orthogonal too.
-  static void orthonormalize(const std::vector<Index>& members, std::vector<Modes>& q, CoarseModes& r) {
+  // Modified Gram-Schmidt, twice, so that what is left of a nearly dependent column is orthogonal
+  // too.
+  static void orthonormalize(const std::vector<Index>& members, std::vector<Modes>& q,
+                             CoarseModes& r) {
     const auto column_dot = [&](int s, int t) {
       double sum = 0.0;
       for (const Index i : members) sum += q[i].col(s).dot(q[i].col(t));
@@ -173,7 +187,8 @@ struct AmgLevel {
       for (Index k = coarse.a.start[i]; k < coarse.a.start[i + 1]; ++k)
         if (coarse.a.column[k] == i)
           for (int t = 0; t < c; ++t)
-            if (coarse.a.values[k](t, t) == 0.0) coarse.a.values[k](t, t) = 1.0;  // a column that was dropped
+            // a column that was dropped
+            if (coarse.a.values[k](t, t) == 0.0) coarse.a.values[k](t, t) = 1.0;
   }
 };
 

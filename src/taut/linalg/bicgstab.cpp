@@ -30,7 +30,8 @@ struct Run {
     return norm(r) / b_norm;
   }
 
-  // One cycle from the current x. True when the recurrence says converged or the limit is hit, false on breakdown.
+  // One cycle from the current x. True when the recurrence says converged or the limit is hit,
+  // false on breakdown.
   bool cycle() {
     shadow = r;
     std::fill(p.begin(), p.end(), 0.0);
@@ -69,8 +70,8 @@ struct Run {
 
 }  // namespace
 
-KrylovResult bicgstab(const LinearOperator& a, const Preconditioner& m, std::span<const double> b, std::span<double> x,
-                      const KrylovOptions& options) {
+KrylovResult bicgstab(const LinearOperator& a, const Preconditioner& m, std::span<const double> b,
+                      std::span<double> x, const KrylovOptions& options) {
   const std::size_t n = static_cast<std::size_t>(a.size());
   assert(b.size() == n && x.size() == n);
   KrylovResult result;
@@ -83,22 +84,29 @@ KrylovResult bicgstab(const LinearOperator& a, const Preconditioner& m, std::spa
   Run run{a, m, b, x, options, b_norm, result, zero, zero, zero, zero, zero, zero, zero};
   result.start_value = result.stop_value = run.true_residual();
   // Written so that a NaN goes into the loop and is reported there.
-  for (int restart = 0; !(result.stop_value <= options.relative_tolerance) && result.iterations < options.max_iterations; ++restart) {
+  for (int restart = 0; !(result.stop_value <= options.relative_tolerance) &&
+                        result.iterations < options.max_iterations;
+       ++restart) {
     if (restart > max_restarts) {
-      result.status = {Outcome::breakdown, fmt::format("BiCGSTAB broke down {} times; residual {:.3g} after {} iterations", restart,
-                                                       result.stop_value, result.iterations)};
+      result.status = {
+          Outcome::breakdown,
+          fmt::format("BiCGSTAB broke down {} times; residual {:.3g} after {} iterations", restart,
+                      result.stop_value, result.iterations)};
       return result;
     }
     run.cycle();
     result.stop_value = run.true_residual();
     if (!std::isfinite(result.stop_value)) {
-      result.status = {Outcome::not_finite, fmt::format("the residual is not finite after {} iterations", result.iterations)};
+      result.status = {
+          Outcome::not_finite,
+          fmt::format("the residual is not finite after {} iterations", result.iterations)};
       return result;
     }
   }
   if (!(result.stop_value <= options.relative_tolerance))
-    result.status = {Outcome::max_iterations, fmt::format("{} iterations reach {:.3g}, not {:.3g}", result.iterations, result.stop_value,
-                                                          options.relative_tolerance)};
+    result.status = {Outcome::max_iterations,
+                     fmt::format("{} iterations reach {:.3g}, not {:.3g}", result.iterations,
+                                 result.stop_value, options.relative_tolerance)};
   return result;
 }
 

@@ -54,14 +54,21 @@ struct BlockCholesky::Implementation {
 
   void make_factor(bool in_single) {
     single = in_single;
-    if (single && !single_factor) single_factor = std::make_unique<NumericFactor<float>>(tree, graph, condensed_at);
-    if (!single && !double_factor) double_factor = std::make_unique<NumericFactor<double>>(tree, graph, condensed_at);
+    if (single && !single_factor)
+      single_factor = std::make_unique<NumericFactor<float>>(tree, graph, condensed_at);
+    if (!single && !double_factor)
+      double_factor = std::make_unique<NumericFactor<double>>(tree, graph, condensed_at);
   }
 
-  // Single precision sees vectors whose largest entry is about 1: what is left of a residual may be far below its range.
-  double scale_for(std::span<const double> b) const { return single ? scale_for(largest_magnitude(b)) : 1.0; }
+  // Single precision sees vectors whose largest entry is about 1: what is left of a residual may be
+  // far below its range.
+  double scale_for(std::span<const double> b) const {
+    return single ? scale_for(largest_magnitude(b)) : 1.0;
+  }
   double scale_for(double largest) const {
-    return single && largest > 0.0 && std::isfinite(largest) ? std::ldexp(1.0, -std::clamp(std::ilogb(largest), -1000, 1000)) : 1.0;
+    return single && largest > 0.0 && std::isfinite(largest)
+               ? std::ldexp(1.0, -std::clamp(std::ilogb(largest), -1000, 1000))
+               : 1.0;
   }
   double forward_norm2() {
     return with_factor([&](auto& factor) { return factor.forward_norm2(); }) / (scale * scale);
@@ -76,13 +83,17 @@ struct BlockCholesky::Implementation {
   Status factorize_in(bool in_single, const FactorSource& source, std::span<const Load> loads) {
     make_factor(in_single);
     std::array<FactorLoad, 2> list;
-    for (std::size_t k = 0; k < loads.size(); ++k) list[k] = {loads[k].b.data(), scale_for(loads[k].b)};
-    const Status status = with_factor([&](auto& factor) { return factor.factorize(source, start, std::span(list).first(loads.size())); });
+    for (std::size_t k = 0; k < loads.size(); ++k)
+      list[k] = {loads[k].b.data(), scale_for(loads[k].b)};
+    const Status status = with_factor([&](auto& factor) {
+      return factor.factorize(source, start, std::span(list).first(loads.size()));
+    });
     if (loads.empty() || !status.ok()) return status;
     scale = list[loads.size() - 1].scale;
     if (loads.back().norm2) *loads.back().norm2 = forward_norm2();
     if (loads.size() > 1)
-      *loads[0].norm2 = with_factor([&](auto& factor) { return factor.first_load_norm2(); }) / (list[0].scale * list[0].scale);
+      *loads[0].norm2 = with_factor([&](auto& factor) { return factor.first_load_norm2(); }) /
+                        (list[0].scale * list[0].scale);
     return status;
   }
 
@@ -99,9 +110,11 @@ struct BlockCholesky::Implementation {
     }
   }
 
-  Status factorize_with_basis(const BlockCsr& a, const NodeBasis& basis, std::span<const Load> loads, const BlocksOutside& outside) {
+  Status factorize_with_basis(const BlockCsr& a, const NodeBasis& basis,
+                              std::span<const Load> loads, const BlocksOutside& outside) {
     assert(a.pattern == analyzed);
-    assert(basis.dim.empty() || (a.pattern->uniform_dim == 3 && static_cast<Index>(basis.dim.size()) == a.rows()));
+    assert(basis.dim.empty() ||
+           (a.pattern->uniform_dim == 3 && static_cast<Index>(basis.dim.size()) == a.rows()));
     if (pattern != a.pattern) number_unknowns(*a.pattern);
     pattern = a.pattern;
     assert(!outside.lumped || a.pattern->uniform_dim == 3);
@@ -114,7 +127,8 @@ struct BlockCholesky::Implementation {
     return factorize(source, loads);
   }
 
-  void take_blocks(const BlockPattern& p, std::span<const std::uint8_t> mask, BlocksLeftOut left_out) {
+  void take_blocks(const BlockPattern& p, std::span<const std::uint8_t> mask,
+                   BlocksLeftOut left_out) {
     if (left_out == BlocksLeftOut::without_place) {
       analyzed_blocks = covered_blocks(p, mask, graph, tree);
       graph = condensed_graph(analyzed_graph(p, analyzed_blocks), std::move(graph.condensed));
@@ -125,7 +139,8 @@ struct BlockCholesky::Implementation {
     for (const Index k : p.diagonal) analyzed_blocks[k] = 1;
   }
 
-  Status analyze(const BlockPattern& p, std::span<const std::uint8_t> mask, BlocksLeftOut left_out) {
+  Status analyze(const BlockPattern& p, std::span<const std::uint8_t> mask,
+                 BlocksLeftOut left_out) {
     pattern = nullptr;
     analyzed = nullptr;
     single_factor = nullptr;
@@ -134,11 +149,14 @@ struct BlockCholesky::Implementation {
       AnalyzedGraph all = analyzed_graph(p, mask);
       std::vector<Index> condensed = condensed_nodes(all);
       graph = condensed_graph(std::move(all), std::move(condensed));
-      tree = make_supernode_tree(graph.rest.graph, elimination_order(graph.rest.graph, graph.rest.weight), graph.rest.weight);
+      tree = make_supernode_tree(graph.rest.graph,
+                                 elimination_order(graph.rest.graph, graph.rest.weight),
+                                 graph.rest.weight);
       take_blocks(p, mask, left_out);
       condensed_at = assign_condensed(graph, tree);
       parallelograms.clear();
-      if (!mask.empty() && p.uniform_dim == 3) parallelograms = taut::parallelograms(p, mask, analyzed_blocks);
+      if (!mask.empty() && p.uniform_dim == 3)
+        parallelograms = taut::parallelograms(p, mask, analyzed_blocks);
       unanalyzed = unanalyzed_blocks(p, analyzed_blocks, parallelograms);
       make_factor(precision != CholeskyPrecision::double_precision);
     } catch (const std::bad_alloc&) {
@@ -156,7 +174,8 @@ struct BlockCholesky::Implementation {
   }
 };
 
-BlockCholesky::BlockCholesky(CholeskyPrecision precision) : implementation_(std::make_unique<Implementation>()) {
+BlockCholesky::BlockCholesky(CholeskyPrecision precision)
+    : implementation_(std::make_unique<Implementation>()) {
   implementation_->precision = precision;
   implementation_->single = precision != CholeskyPrecision::double_precision;
 }
@@ -174,7 +193,9 @@ std::string BlockCholesky::name() const {
   }
 }
 
-void BlockCholesky::set_precision(CholeskyPrecision precision) { implementation_->precision = precision; }
+void BlockCholesky::set_precision(CholeskyPrecision precision) {
+  implementation_->precision = precision;
+}
 
 Status BlockCholesky::analyze(const BlockCsr& a) { return analyze(a.pattern, {}); }
 
@@ -182,41 +203,52 @@ Status BlockCholesky::analyze(const BlockPattern& pattern) {
   return implementation_->analyze(pattern, {}, BlocksLeftOut::all_outside_mask);
 }
 
-Status BlockCholesky::analyze(std::shared_ptr<const BlockPattern> pattern, std::span<const std::uint8_t> mask, BlocksLeftOut left_out) {
+Status BlockCholesky::analyze(std::shared_ptr<const BlockPattern> pattern,
+                              std::span<const std::uint8_t> mask, BlocksLeftOut left_out) {
   const Status status = implementation_->analyze(*pattern, mask, left_out);
   implementation_->pattern = implementation_->analyzed = std::move(pattern);
   return status;
 }
 
-std::span<const std::uint8_t> BlockCholesky::analyzed_blocks() const { return implementation_->analyzed_blocks; }
+std::span<const std::uint8_t> BlockCholesky::analyzed_blocks() const {
+  return implementation_->analyzed_blocks;
+}
 
-std::span<const Parallelogram> BlockCholesky::parallelograms() const { return implementation_->parallelograms; }
+std::span<const Parallelogram> BlockCholesky::parallelograms() const {
+  return implementation_->parallelograms;
+}
 
 Status BlockCholesky::factorize(const BlockCsr& a) {
   Implementation& me = *implementation_;
   assert(me.single_factor || me.double_factor);
   if (me.pattern != a.pattern) {
     if (const std::string mismatch = me.graph.all.mismatch(*a.pattern); !mismatch.empty())
-      return {Outcome::breakdown, "Cholesky (block): the matrix does not fit the analysed pattern: " + mismatch};
+      return {Outcome::breakdown,
+              "Cholesky (block): the matrix does not fit the analysed pattern: " + mismatch};
     me.number_unknowns(*a.pattern);
     me.pattern = a.pattern;
   }
   return me.factorize({a, {}, a.pattern == me.analyzed}, {});
 }
 
-Status BlockCholesky::factorize(const BlockCsr& a, const NodeBasis& basis, std::span<const double> b, double* b_norm2,
+Status BlockCholesky::factorize(const BlockCsr& a, const NodeBasis& basis,
+                                std::span<const double> b, double* b_norm2,
                                 const BlocksOutside& outside) {
   const Implementation::Load load{b, b_norm2};
   return implementation_->factorize_with_basis(a, basis, {&load, b.empty() ? 0u : 1u}, outside);
 }
 
-Status BlockCholesky::factorize(const BlockCsr& a, const NodeBasis& basis, std::span<const double> b, double& b_norm2,
-                                std::span<const double> r, double& r_norm2, const BlocksOutside& outside) {
+Status BlockCholesky::factorize(const BlockCsr& a, const NodeBasis& basis,
+                                std::span<const double> b, double& b_norm2,
+                                std::span<const double> r, double& r_norm2,
+                                const BlocksOutside& outside) {
   const Implementation::Load loads[] = {{b, &b_norm2}, {r, &r_norm2}};
   return implementation_->factorize_with_basis(a, basis, loads, outside);
 }
 
-double BlockCholesky::solve_forward(std::span<const double> b) { return solve_forward(b, implementation_->single ? largest_magnitude(b) : 0.0); }
+double BlockCholesky::solve_forward(std::span<const double> b) {
+  return solve_forward(b, implementation_->single ? largest_magnitude(b) : 0.0);
+}
 
 double BlockCholesky::solve_forward(std::span<const double> b, double largest) {
   Implementation& me = *implementation_;
@@ -227,7 +259,8 @@ double BlockCholesky::solve_forward(std::span<const double> b, double largest) {
 
 void BlockCholesky::solve_backward(double beta, std::span<double> x) {
   Implementation& me = *implementation_;
-  me.with_factor([&](auto& factor) { factor.solve_backward({me.start, me.scale}, beta, x.data()); });
+  me.with_factor(
+      [&](auto& factor) { factor.solve_backward({me.start, me.scale}, beta, x.data()); });
 }
 
 Status BlockCholesky::solve(std::span<const double> b, std::span<double> x) {

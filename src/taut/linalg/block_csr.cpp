@@ -13,7 +13,8 @@ namespace {
 // Rows per task: about 0.4 MB of a cloth matrix, enough to hide the cost of handing a task over.
 constexpr Index rows_per_task = 256;
 
-// A row's gathered x: 64 neighbours of 3 unknowns; longer rows are done in pieces of at most this many entries.
+// A row's gathered x: 64 neighbours of 3 unknowns; longer rows are done in pieces of at most this
+// many entries.
 constexpr Index gather_capacity = 192;
 
 void fill_layout(BlockPattern& p) {
@@ -54,15 +55,20 @@ using Four = double __attribute__((vector_size(32), aligned(8), may_alias));
 TAUT_ALWAYS_INLINE const Four& four(const double* p) { return *reinterpret_cast<const Four*>(p); }
 TAUT_ALWAYS_INLINE double sum_of(const Four& v) { return (v[0] + v[2]) + (v[1] + v[3]); }
 
-// The x that a row meets, its neighbours' unknowns packed in `to`. Four are copied of each, whatever its dim: what is too much is written
-// over by the next. Wants four unknowns behind each column_dof of the row.
-TAUT_ALWAYS_INLINE void gather(const RowView& a, Index first, Index last, const double* x, double* to) {
-  for (Index k = first; k < last; ++k) *reinterpret_cast<Four*>(to + a.block_offset[k]) = four(x + a.column_dof[k]);
+// The x that a row meets, its neighbours' unknowns packed in `to`. Four are copied of each,
+// whatever its dim: what is too much is written over by the next. Wants four unknowns behind each
+// column_dof of the row.
+TAUT_ALWAYS_INLINE void gather(const RowView& a, Index first, Index last, const double* x,
+                               double* to) {
+  for (Index k = first; k < last; ++k)
+    *reinterpret_cast<Four*>(to + a.block_offset[k]) = four(x + a.column_dof[k]);
 }
 
-// s += the first `dim` rows of a panel times g. Two sums a row, so that one need not wait for the other.
+// s += the first `dim` rows of a panel times g. Two sums a row, so that one need not wait for the
+// other.
 template <int dim>
-TAUT_ALWAYS_INLINE void row_product(const double* row, Index width, const double* g, Index length, double* s) {
+TAUT_ALWAYS_INLINE void row_product(const double* row, Index width, const double* g, Index length,
+                                    double* s) {
   Four even[dim] = {}, odd[dim] = {};
   Index c = 0;
   for (; c + 8 <= length; c += 8) {
@@ -84,7 +90,8 @@ TAUT_ALWAYS_INLINE void row_product(const double* row, Index width, const double
 
 // Rows that are too long to be gathered at once, or too near the end of x.
 template <int dim>
-TAUT_ALWAYS_INLINE void row_product_in_pieces(const RowView& a, Index first, Index last, const double* row, Index width, const double* x,
+TAUT_ALWAYS_INLINE void row_product_in_pieces(const RowView& a, Index first, Index last,
+                                              const double* row, Index width, const double* x,
                                               double* gathered, double* s) {
   Index k = first;
   for (Index piece = 0; piece < width;) {
@@ -102,7 +109,8 @@ TAUT_ALWAYS_INLINE void row_product_in_pieces(const RowView& a, Index first, Ind
 
 // y_i = A_i x for a row of `dim` unknowns; returns x_i·y_i.
 template <int dim>
-TAUT_ALWAYS_INLINE double one_row(const RowView& a, Index i, const double* x, double* y, double* gathered) {
+TAUT_ALWAYS_INLINE double one_row(const RowView& a, Index i, const double* x, double* y,
+                                  double* gathered) {
   const double* row = a.values + a.value_start[i];
   const Index width = static_cast<Index>(a.value_start[i + 1] - a.value_start[i]) / dim;
   const Index first = a.row_start[i], last = a.row_start[i + 1];
@@ -123,7 +131,8 @@ TAUT_ALWAYS_INLINE double one_row(const RowView& a, Index i, const double* x, do
 }
 
 // Rows of blocks of up to 3x3; returns the sum of x_i·y_i over the rows.
-TAUT_MULTIVERSION double rows_product_blocks(const RowView& a, Index begin, Index end, const double* x, double* y) {
+TAUT_MULTIVERSION double rows_product_blocks(const RowView& a, Index begin, Index end,
+                                             const double* x, double* y) {
   alignas(64) double gathered[gather_capacity + 4];
   double xax = 0.0;
   for (Index i = begin; i < end; ++i) {
@@ -141,9 +150,11 @@ TAUT_MULTIVERSION double rows_product_blocks(const RowView& a, Index begin, Inde
 // How far ahead values are asked for, into the second-level cache.
 constexpr Index prefetch_distance = 4096 / sizeof(double);
 
-// The same where all blocks are 3x3, which needs fewer index lists. A row's x is gathered while the row before it is multiplied: what is
-// read there in other pieces than it was written in must have arrived in the cache.
-TAUT_MULTIVERSION double rows_product_3(const RowView& a, Index begin, Index end, const double* x, double* y) {
+// The same where all blocks are 3x3, which needs fewer index lists. A row's x is gathered while the
+// row before it is multiplied: what is read there in other pieces than it was written in must have
+// arrived in the cache.
+TAUT_MULTIVERSION double rows_product_3(const RowView& a, Index begin, Index end, const double* x,
+                                        double* y) {
   alignas(64) double gathered[2][gather_capacity + 4];
   const auto is_short = [&](Index i) __attribute__((always_inline)) {
     const Index first = a.row_start[i], last = a.row_start[i + 1];
@@ -151,7 +162,8 @@ TAUT_MULTIVERSION double rows_product_3(const RowView& a, Index begin, Index end
   };
   const auto gather_row = [&](Index i) __attribute__((always_inline)) {
     double* to = gathered[i % 2];
-    for (Index k = a.row_start[i]; k < a.row_start[i + 1]; ++k, to += 3) *reinterpret_cast<Four*>(to) = four(x + a.column_dof[k]);
+    for (Index k = a.row_start[i]; k < a.row_start[i + 1]; ++k, to += 3)
+      *reinterpret_cast<Four*>(to) = four(x + a.column_dof[k]);
   };
   double xax = 0.0;
   bool is_gathered = begin < end && is_short(begin);
@@ -163,7 +175,8 @@ TAUT_MULTIVERSION double rows_product_3(const RowView& a, Index begin, Index end
     const Index first = a.row_start[i], last = a.row_start[i + 1], width = 3 * (last - first);
     double s[3] = {};
     if (is_gathered) {
-      for (Index k = 0; k < 3 * width; k += 8) __builtin_prefetch(row + prefetch_distance + k, 0, 2);
+      for (Index k = 0; k < 3 * width; k += 8)
+        __builtin_prefetch(row + prefetch_distance + k, 0, 2);
       row_product<3>(row, width, gathered[i % 2], width, s);
     } else {
       row_product_in_pieces<3>(a, first, last, row, width, x, gathered[i % 2], s);
@@ -178,7 +191,8 @@ TAUT_MULTIVERSION double rows_product_3(const RowView& a, Index begin, Index end
 }
 
 // The same for 1x1 blocks.
-TAUT_MULTIVERSION double rows_product_1(const RowView& a, Index begin, Index end, const double* x, double* y) {
+TAUT_MULTIVERSION double rows_product_1(const RowView& a, Index begin, Index end, const double* x,
+                                        double* y) {
   double xax = 0.0;
   for (Index i = begin; i < end; ++i) {
     double s = 0.0;
@@ -193,10 +207,12 @@ TAUT_MULTIVERSION double rows_product_1(const RowView& a, Index begin, Index end
 
 double rows_product(const BlockCsr& a, Index begin, Index end, const double* x, double* y) {
   const BlockPattern& p = *a.pattern;
-  const RowView view{p.row_start.data(), p.column.data(),      p.column_dof.data(), p.block_offset.data(),
-                     p.dof_start.data(), p.value_start.data(), a.values.data(),     p.dofs()};
+  const RowView view{
+      p.row_start.data(), p.column.data(),      p.column_dof.data(), p.block_offset.data(),
+      p.dof_start.data(), p.value_start.data(), a.values.data(),     p.dofs()};
   if (p.uniform_dim == 1) return rows_product_1(view, begin, end, x, y);
-  return p.uniform_dim == 3 ? rows_product_3(view, begin, end, x, y) : rows_product_blocks(view, begin, end, x, y);
+  return p.uniform_dim == 3 ? rows_product_3(view, begin, end, x, y)
+                            : rows_product_blocks(view, begin, end, x, y);
 }
 
 }  // namespace
@@ -208,12 +224,14 @@ Index BlockPattern::find(Index i, Index j) const {
 }
 
 Offset BlockPattern::bytes() const {
-  return static_cast<Offset>(
-      sizeof(Index) * (dof_start.size() + row_start.size() + column.size() + column_dof.size() + block_offset.size() + diagonal.size()) +
-      sizeof(Offset) * value_start.size());
+  return static_cast<Offset>(sizeof(Index) *
+                                 (dof_start.size() + row_start.size() + column.size() +
+                                  column_dof.size() + block_offset.size() + diagonal.size()) +
+                             sizeof(Offset) * value_start.size());
 }
 
-std::shared_ptr<const BlockPattern> make_pattern(std::vector<std::vector<Index>> columns, std::span<const Index> dims) {
+std::shared_ptr<const BlockPattern> make_pattern(std::vector<std::vector<Index>> columns,
+                                                 std::span<const Index> dims) {
   assert(columns.size() == dims.size());
   std::vector<Index> row_start(columns.size() + 1, 0), column, dof_start(columns.size() + 1, 0);
   for (std::size_t i = 0; i < columns.size(); ++i) {
@@ -228,12 +246,15 @@ std::shared_ptr<const BlockPattern> make_pattern(std::vector<std::vector<Index>>
   return make_pattern(std::move(row_start), std::move(column), std::move(dof_start));
 }
 
-std::shared_ptr<const BlockPattern> make_pattern(std::vector<std::vector<Index>> columns, Index uniform_dim) {
+std::shared_ptr<const BlockPattern> make_pattern(std::vector<std::vector<Index>> columns,
+                                                 Index uniform_dim) {
   const std::vector<Index> dims(columns.size(), uniform_dim);
   return make_pattern(std::move(columns), dims);
 }
 
-std::shared_ptr<const BlockPattern> make_pattern(std::vector<Index> row_start, std::vector<Index> column, std::vector<Index> dof_start) {
+std::shared_ptr<const BlockPattern> make_pattern(std::vector<Index> row_start,
+                                                 std::vector<Index> column,
+                                                 std::vector<Index> dof_start) {
   auto pattern = std::make_shared<BlockPattern>();
   pattern->row_start = std::move(row_start);
   pattern->column = std::move(column);
@@ -244,7 +265,10 @@ std::shared_ptr<const BlockPattern> make_pattern(std::vector<Index> row_start, s
 
 double BlockCsr::at(Index row_dof, Index column_dof) const {
   const auto& start = pattern->dof_start;
-  const auto node_of = [&](Index dof) { return static_cast<Index>(std::upper_bound(start.begin(), start.end(), dof) - start.begin()) - 1; };
+  const auto node_of = [&](Index dof) {
+    return static_cast<Index>(std::upper_bound(start.begin(), start.end(), dof) - start.begin()) -
+           1;
+  };
   const Index i = node_of(row_dof), j = node_of(column_dof);
   const Index k = pattern->find(i, j);
   if (k < 0) return 0.0;
@@ -253,13 +277,16 @@ double BlockCsr::at(Index row_dof, Index column_dof) const {
 
 void multiply(const BlockCsr& a, std::span<const double> x, std::span<double> y) {
   assert(static_cast<Index>(x.size()) == a.dofs() && static_cast<Index>(y.size()) == a.dofs());
-  parallel_for(a.rows(), rows_per_task, [&](Index begin, Index end) { rows_product(a, begin, end, x.data(), y.data()); });
+  parallel_for(a.rows(), rows_per_task,
+               [&](Index begin, Index end) { rows_product(a, begin, end, x.data(), y.data()); });
 }
 
 double multiply_dot(const BlockCsr& a, std::span<const double> x, std::span<double> y) {
   assert(static_cast<Index>(x.size()) == a.dofs() && static_cast<Index>(y.size()) == a.dofs());
   return ordered_sum(
-      a.rows(), [&](Index begin, Index end) { return rows_product(a, begin, end, x.data(), y.data()); }, rows_per_task, 1);
+      a.rows(),
+      [&](Index begin, Index end) { return rows_product(a, begin, end, x.data(), y.data()); },
+      rows_per_task, 1);
 }
 
 Offset multiply_bytes(const BlockCsr& a) {
@@ -273,7 +300,8 @@ std::vector<double> diagonal_of(const BlockCsr& a) {
   std::vector<double> diagonal(static_cast<std::size_t>(a.dofs()));
   const BlockPattern& p = *a.pattern;
   for (Index i = 0; i < p.rows(); ++i)
-    for (Index r = 0; r < p.dim(i); ++r) diagonal[p.dof_start[i] + r] = a.block(i, p.diagonal[i])[r * p.width(i) + r];
+    for (Index r = 0; r < p.dim(i); ++r)
+      diagonal[p.dof_start[i] + r] = a.block(i, p.diagonal[i])[r * p.width(i) + r];
   return diagonal;
 }
 

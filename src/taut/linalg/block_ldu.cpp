@@ -18,7 +18,8 @@ struct Sweep {
 };
 
 // w = L⁻¹ r, v = D⁻¹ w.
-TAUT_MULTIVERSION void forward_3(const Sweep& s, const double* inverse_diagonal, const double* r, double* w, double* v) {
+TAUT_MULTIVERSION void forward_3(const Sweep& s, const double* inverse_diagonal, const double* r,
+                                 double* w, double* v) {
   for (Index p = 0; p < s.places; ++p) {
     const double* from = r + s.dof[p];
     const Index dim = s.dim[p];
@@ -79,7 +80,8 @@ TAUT_MULTIVERSION void backward_3(const Sweep& s, double* v, double* z) {
   }
 }
 
-void forward_1(const Sweep& s, const double* inverse_diagonal, const double* r, double* w, double* v) {
+void forward_1(const Sweep& s, const double* inverse_diagonal, const double* r, double* w,
+               double* v) {
   for (Index p = 0; p < s.places; ++p) {
     double a = r[s.dof[p]];
     for (Index k = s.start[p]; k < s.start[p + 1]; ++k) a -= s.blocks[k] * w[s.column[k]];
@@ -107,7 +109,8 @@ void backward_1(const Sweep& s, double* v, double* z) {
 
 void BlockLdu::set_pattern(const std::shared_ptr<const BlockPattern>& pattern, bool symmetric) {
   if (layout_.pattern != pattern) layout_ = triangular_layout(pattern, !symmetric);
-  const std::size_t size = static_cast<std::size_t>(block_size()), vector_size = static_cast<std::size_t>(layout_.places() * layout_.block);
+  const std::size_t size = static_cast<std::size_t>(block_size()),
+                    vector_size = static_cast<std::size_t>(layout_.places() * layout_.block);
   lower_.resize(layout_.lower.column.size() * size);
   upper_.resize(layout_.upper.column.size() * size);
   inverse_diagonal_.resize(layout_.node.size() * size);
@@ -117,21 +120,24 @@ void BlockLdu::set_pattern(const std::shared_ptr<const BlockPattern>& pattern, b
 void BlockLdu::solve(std::span<const double> r, std::span<double> z) const {
   assert(static_cast<Index>(r.size()) == layout_.pattern->dofs() && r.size() == z.size());
   const auto sweep = [&](const TriangularRows& rows, const std::vector<double>& blocks) {
-    return Sweep{layout_.places(), layout_.dof.data(), layout_.dim.data(), rows.start.data(), rows.column.data(), blocks.data()};
+    return Sweep{layout_.places(),  layout_.dof.data(), layout_.dim.data(),
+                 rows.start.data(), rows.column.data(), blocks.data()};
   };
   const Sweep lower = sweep(layout_.lower, lower_), upper = sweep(layout_.upper, upper_);
   const bool symmetric = layout_.upper.start.empty(), scalar = layout_.block == 1;
   scalar ? forward_1(lower, inverse_diagonal_.data(), r.data(), w_.data(), v_.data())
          : forward_3(lower, inverse_diagonal_.data(), r.data(), w_.data(), v_.data());
   if (symmetric)
-    scalar ? backward_transposed_1(lower, v_.data(), z.data()) : backward_transposed_3(lower, v_.data(), z.data());
+    scalar ? backward_transposed_1(lower, v_.data(), z.data())
+           : backward_transposed_3(lower, v_.data(), z.data());
   else
     scalar ? backward_1(upper, v_.data(), z.data()) : backward_3(upper, v_.data(), z.data());
 }
 
 Offset BlockLdu::bytes() const {
-  return layout_.bytes() +
-         static_cast<Offset>((lower_.size() + upper_.size() + inverse_diagonal_.size() + w_.size() + v_.size()) * sizeof(double));
+  return layout_.bytes() + static_cast<Offset>((lower_.size() + upper_.size() +
+                                                inverse_diagonal_.size() + w_.size() + v_.size()) *
+                                               sizeof(double));
 }
 
 }  // namespace taut

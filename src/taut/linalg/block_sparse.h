@@ -1,8 +1,9 @@
 #pragma once
-// A sparse matrix of R x C blocks, all of one size known to the compiler: prolongators and coarse matrices of multigrid. BlockCsr is for
-// the system.
+// A sparse matrix of R x C blocks, all of one size known to the compiler: prolongators and coarse
+// matrices of multigrid. BlockCsr is for the system.
 //
-//   row i has blocks start[i] ... start[i+1]-1, in columns column[k], row-major in values[k]; columns in no particular order
+//   row i has blocks start[i] ... start[i+1]-1, in columns column[k], row-major in values[k];
+//   columns in no particular order
 
 #include <Eigen/Core>
 #include <vector>
@@ -22,14 +23,19 @@ struct BlockSparse {
   std::vector<Block> values;
 
   Index rows() const { return static_cast<Index>(start.size()) - 1; }
-  Offset bytes() const { return static_cast<Offset>((start.size() + column.size()) * sizeof(Index) + values.size() * sizeof(Block)); }
+  Offset bytes() const {
+    return static_cast<Offset>((start.size() + column.size()) * sizeof(Index) +
+                               values.size() * sizeof(Block));
+  }
 };
 
-// Collects one row of a product: add(j) is the block of column j, zero when new; flush() appends the row to `target`.
+// Collects one row of a product: add(j) is the block of column j, zero when new; flush() appends
+// the row to `target`.
 template <int R, int C>
 class RowCollector {
  public:
-  explicit RowCollector(BlockSparse<R, C>& target) : target_(target), slot_(static_cast<std::size_t>(target.columns), -1) {}
+  explicit RowCollector(BlockSparse<R, C>& target)
+      : target_(target), slot_(static_cast<std::size_t>(target.columns), -1) {}
   typename BlockSparse<R, C>::Block& add(Index j) {
     if (slot_[j] < 0) {
       slot_[j] = static_cast<Index>(target_.column.size());
@@ -39,7 +45,9 @@ class RowCollector {
     return target_.values[slot_[j]];
   }
   void flush() {
-    for (std::size_t k = static_cast<std::size_t>(target_.start.back()); k < target_.column.size(); ++k) slot_[target_.column[k]] = -1;
+    for (std::size_t k = static_cast<std::size_t>(target_.start.back()); k < target_.column.size();
+         ++k)
+      slot_[target_.column[k]] = -1;
     target_.start.push_back(static_cast<Index>(target_.column.size()));
   }
 
@@ -56,7 +64,8 @@ BlockSparse<R, C> product(const BlockSparse<R, K>& a, const BlockSparse<K, C>& b
   RowCollector<R, C> row(result);
   for (Index i = 0; i < a.rows(); ++i) {
     for (Index k = a.start[i]; k < a.start[i + 1]; ++k)
-      for (Index m = b.start[a.column[k]]; m < b.start[a.column[k] + 1]; ++m) row.add(b.column[m]).noalias() += a.values[k] * b.values[m];
+      for (Index m = b.start[a.column[k]]; m < b.start[a.column[k] + 1]; ++m)
+        row.add(b.column[m]).noalias() += a.values[k] * b.values[m];
     row.flush();
   }
   return result;
@@ -89,7 +98,8 @@ void multiply(const BlockSparse<R, C>& a, const double* x, double* y, bool add =
       Eigen::Matrix<double, R, 1> sum = Eigen::Matrix<double, R, 1>::Zero();
       if (add) sum = out;
       for (Index k = a.start[i]; k < a.start[i + 1]; ++k)
-        sum.noalias() += a.values[k] * Eigen::Map<const Eigen::Matrix<double, C, 1>>(x + C * static_cast<std::ptrdiff_t>(a.column[k]));
+        sum.noalias() += a.values[k] * Eigen::Map<const Eigen::Matrix<double, C, 1>>(
+                                           x + C * static_cast<std::ptrdiff_t>(a.column[k]));
       out = sum;
     }
   });

@@ -13,7 +13,12 @@ struct EigenCholesky::Implementation {
 
   Eigen::Map<const Sparse> matrix() const {
     const Index n = static_cast<Index>(csc.column_start.size()) - 1;
-    return {n, n, static_cast<Index>(csc.row.size()), csc.column_start.data(), csc.row.data(), csc.value.data()};
+    return {n,
+            n,
+            static_cast<Index>(csc.row.size()),
+            csc.column_start.data(),
+            csc.row.data(),
+            csc.value.data()};
   }
 };
 
@@ -38,9 +43,14 @@ Status EigenCholesky::factorize(const BlockCsr& a) {
   const bool complete = implementation_->factor.info() == Eigen::Success;
   for (Index k = 0; complete && k < static_cast<Index>(pivots.size()); ++k)
     if (!(pivots[k] > 0.0))
-      return {Outcome::not_positive_definite,
-              fmt::format("Cholesky (eigen): pivot {:.3g} at unknown {}: the matrix is not positive definite", pivots[k], permutation_[k])};
-  if (!complete) return {Outcome::not_positive_definite, "Cholesky (eigen): a zero pivot: the matrix is not positive definite"};
+      return {
+          Outcome::not_positive_definite,
+          fmt::format(
+              "Cholesky (eigen): pivot {:.3g} at unknown {}: the matrix is not positive definite",
+              pivots[k], permutation_[k])};
+  if (!complete)
+    return {Outcome::not_positive_definite,
+            "Cholesky (eigen): a zero pivot: the matrix is not positive definite"};
   return {};
 }
 
@@ -52,7 +62,8 @@ Status EigenCholesky::solve(std::span<const double> b, std::span<double> x) {
 }
 
 FactorStatistics EigenCholesky::statistics() const {
-  const double nonzeros = static_cast<double>(implementation_->factor.matrixL().nestedExpression().nonZeros());
+  const double nonzeros =
+      static_cast<double>(implementation_->factor.matrixL().nestedExpression().nonZeros());
   return {nonzeros, 0.0, nonzeros * (sizeof(double) + sizeof(Index)), "amd"};
 }
 

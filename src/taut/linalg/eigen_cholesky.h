@@ -1,5 +1,6 @@
 #pragma once
-// Eigen's SimplicialLDLT with approximate minimum degree ordering: the plain baseline, and what core_pcg runs on without CHOLMOD.
+// Eigen's SimplicialLDLT with approximate minimum degree ordering: the plain baseline, and what
+// core_pcg runs on without CHOLMOD.
 
 #include "taut/linalg/sparse_cholesky.h"
 

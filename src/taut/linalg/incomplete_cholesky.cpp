@@ -17,7 +17,11 @@ template <int n>
 class Factorization {
  public:
   Factorization(const BlockCsr& a, double shift, BlockLdu& factor)
-      : a_(a), growth_(1.0 + shift), factor_(factor), layout_(factor.layout()), slot_(layout_.node.size(), -1) {}
+      : a_(a),
+        growth_(1.0 + shift),
+        factor_(factor),
+        layout_(factor.layout()),
+        slot_(layout_.node.size(), -1) {}
 
   Index run() {
     for (Index p = 0; p < layout_.places(); ++p)
@@ -39,7 +43,8 @@ class Factorization {
       const Index j = lower.column[k];
       load_padded(a_, i, lower.source[k], n, w);
       for (Index m = lower.start[j]; m < lower.start[j + 1]; ++m)
-        if (const Index both = slot_[lower.column[m]]; both >= 0) subtract_product_transposed<n>(w_of(both), factor_.lower(m), w);
+        if (const Index both = slot_[lower.column[m]]; both >= 0)
+          subtract_product_transposed<n>(w_of(both), factor_.lower(m), w);
       product<n>(w, factor_.inverse_diagonal(j), factor_.lower(k));
       subtract_product_transposed<n>(factor_.lower(k), w, diagonal);
     }
@@ -61,7 +66,8 @@ class Factorization {
 Index BlockIncompleteCholesky::factorize(const BlockCsr& a, double shift) {
   ++factorizations_;
   shift_ = shift;
-  return factor_.layout().block == 1 ? Factorization<1>(a, shift, factor_).run() : Factorization<3>(a, shift, factor_).run();
+  return factor_.layout().block == 1 ? Factorization<1>(a, shift, factor_).run()
+                                     : Factorization<3>(a, shift, factor_).run();
 }
 
 Status BlockIncompleteCholesky::update(const BlockCsr& a) {
@@ -80,8 +86,9 @@ Status BlockIncompleteCholesky::find_shift(const BlockCsr& a, Index broken_node)
   for (; factorize(a, works) >= 0; fails = works, works *= 2.0)
     if (works > largest_shift)
       return {Outcome::not_positive_definite,
-              fmt::format("IC(0) breaks down at node {} and no shift up to {:g} mends it: the matrix is not positive definite", broken_node,
-                          works)};
+              fmt::format("IC(0) breaks down at node {} and no shift up to {:g} mends it: the "
+                          "matrix is not positive definite",
+                          broken_node, works)};
   for (int round = 0; round < shift_refinements; ++round) {
     const double middle = std::sqrt(fails * works);
     (factorize(a, middle) < 0 ? works : fails) = middle;
@@ -92,8 +99,9 @@ Status BlockIncompleteCholesky::find_shift(const BlockCsr& a, Index broken_node)
 
 std::string BlockIncompleteCholesky::remark() const {
   if (shift_ == 0.0) return {};
-  return fmt::format("IC(0) broke down at node {}: diagonal blocks raised by {:.3g} ({} factorisations)", broken_node_, shift_,
-                     factorizations_);
+  return fmt::format(
+      "IC(0) broke down at node {}: diagonal blocks raised by {:.3g} ({} factorisations)",
+      broken_node_, shift_, factorizations_);
 }
 
 }  // namespace taut

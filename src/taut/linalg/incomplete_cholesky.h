@@ -1,17 +1,23 @@
 #pragma once
-// Incomplete Cholesky factorisation with zero fill-in, on node blocks: IC(0), Meijerink & van der Vorst 1977.
+// Incomplete Cholesky factorisation with zero fill-in, on node blocks: IC(0), Meijerink & van der
+// Vorst 1977.
 //
-//   A + α blockdiag(A) ≈ M = L D Lᵀ       L: unit lower triangular with the blocks of A's lower triangle, D: diagonal blocks
+//   A + α blockdiag(A) ≈ M = L D Lᵀ       L: unit lower triangular with the blocks of A's lower
+//                                         triangle, D: diagonal blocks
 //
-//     W_ij = A_ij - Σ_k W_ik L_jkᵀ   (k < j, where both blocks are there)      L_ij = W_ij D_j⁻¹      D_i = (1+α) A_ii - Σ_j L_ij W_ijᵀ
+//     W_ij = A_ij - Σ_k W_ik L_jkᵀ   (k < j, where both blocks are there)      L_ij = W_ij D_j⁻¹
+//     D_i = (1+α) A_ii - Σ_j L_ij W_ijᵀ
 //
-// Exact where the factor fills nothing in (block tridiagonal A). Blocks of 0 to 3 unknowns; as scalars when no node has more than one. A
-// choice of axes at the nodes changes nothing (a block-orthogonal similarity of A is one of M), unlike with a scalar IC(0).
+// Exact where the factor fills nothing in (block tridiagonal A). Blocks of 0 to 3 unknowns; as
+// scalars when no node has more than one. A choice of axes at the nodes changes nothing (a
+// block-orthogonal similarity of A is one of M), unlike with a scalar IC(0).
 //
-// α = 0 if that works. It breaks down when some D_i is not positive definite, which a positive definite A does not exclude (Kershaw 1978).
-// Then α is found (Manteuffel 1980): doubled from `first_shift` until the factorisation exists, then the interval below it is halved
-// `shift_refinements` times (on a logarithmic scale), keeping the least α that works. remark() tells α and the number of factorisations.
-// The order is that of the nodes (linalg/triangular_layout.h).
+// α = 0 if that works. It breaks down when some D_i is not positive definite, which a positive
+// definite A does not exclude (Kershaw 1978). Then α is found (Manteuffel 1980): doubled from
+// `first_shift` until the factorisation exists, then the interval below it is halved
+// `shift_refinements` times (on a logarithmic scale), keeping the least α that works. remark()
+// tells α and the number of factorisations. The order is that of the nodes
+// (linalg/triangular_layout.h).
 
 #include "taut/linalg/block_ldu.h"
 #include "taut/linalg/preconditioner.h"
@@ -21,7 +27,8 @@ namespace taut {
 class BlockIncompleteCholesky : public Preconditioner {
  public:
   static constexpr double first_shift = 1e-3;
-  static constexpr double largest_shift = 1e3;  // a positive definite A needs less than the most blocks in a row
+  // a positive definite A needs less than the most blocks in a row
+  static constexpr double largest_shift = 1e3;
   static constexpr int shift_refinements = 3;
 
   // A symmetric. not_positive_definite: a diagonal block of A itself is not, or no shift helps.

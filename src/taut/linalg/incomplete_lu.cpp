@@ -23,7 +23,8 @@ bool invert_pivot(const double* block, double* inverse) {
   return true;
 }
 
-// Row by row (the IKJ variant): W = A's row; for each k before i: L_ik = W_ik D_k⁻¹, W_ij -= W_ik U_kj.
+// Row by row (the IKJ variant): W = A's row; for each k before i: L_ik = W_ik D_k⁻¹, W_ij -= W_ik
+// U_kj.
 template <int n>
 class Factorization {
  public:
@@ -50,7 +51,8 @@ class Factorization {
       const Index j = layout_.lower.column[k];
       double* w = factor_.lower(k);
       for (Index m = layout_.upper.start[j]; m < layout_.upper.start[j + 1]; ++m)
-        if (double* target = slot_[layout_.upper.column[m]]) subtract_product<n>(w, factor_.upper(m), target);
+        if (double* target = slot_[layout_.upper.column[m]])
+          subtract_product<n>(w, factor_.upper(m), target);
       product<n>(w, factor_.inverse_diagonal(j), scaled);
       std::copy(scaled, scaled + n * n, w);
     }
@@ -67,8 +69,10 @@ class Factorization {
   template <class Visit>
   void for_each_block(Index p, Visit visit) {
     const TriangularRows &lower = layout_.lower, &upper = layout_.upper;
-    for (Index k = lower.start[p]; k < lower.start[p + 1]; ++k) visit(factor_.lower(k), lower.column[k], lower.source[k]);
-    for (Index k = upper.start[p]; k < upper.start[p + 1]; ++k) visit(factor_.upper(k), upper.column[k], upper.source[k]);
+    for (Index k = lower.start[p]; k < lower.start[p + 1]; ++k)
+      visit(factor_.lower(k), lower.column[k], lower.source[k]);
+    for (Index k = upper.start[p]; k < upper.start[p + 1]; ++k)
+      visit(factor_.upper(k), upper.column[k], upper.source[k]);
   }
 
   const BlockCsr& a_;
@@ -81,10 +85,13 @@ class Factorization {
 
 Status BlockIncompleteLu::update(const BlockCsr& a) {
   factor_.set_pattern(a.pattern, false);
-  const Index broken = factor_.layout().block == 1 ? Factorization<1>(a, factor_).run() : Factorization<3>(a, factor_).run();
+  const Index broken = factor_.layout().block == 1 ? Factorization<1>(a, factor_).run()
+                                                   : Factorization<3>(a, factor_).run();
   if (broken < 0) return {};
   if (!all_finite(a.values)) return {Outcome::not_finite, "the matrix holds NaN or infinity"};
-  return {Outcome::breakdown, fmt::format("ILU(0) breaks down: the diagonal block of node {} becomes singular", broken)};
+  return {
+      Outcome::breakdown,
+      fmt::format("ILU(0) breaks down: the diagonal block of node {} becomes singular", broken)};
 }
 
 }  // namespace taut

@@ -26,7 +26,8 @@ struct CgCoefficients {
 struct KrylovOptions {
   double relative_tolerance = 1e-3;
   int max_iterations = 1000;
-  // Called after every iteration with its number, the stop test's value sqrt(δ/δ0) and the iterate; for histories. May be empty.
+  // Called after every iteration with its number, the stop test's value sqrt(δ/δ0) and the iterate;
+  // for histories. May be empty.
   std::function<void(int, double, std::span<const double>)> observer;
   // pcg: overwritten with the run's coefficients, unless null.
   CgCoefficients* coefficients = nullptr;

@@ -8,7 +8,9 @@ NearNullSpace rigid_motions(Index nodes, std::span<const double> positions) {
   NearNullSpace space;
   space.modes = positions.empty() ? 3 : 6;
   space.values.assign(static_cast<std::size_t>(3 * nodes) * space.modes, 0.0);
-  const auto position = [&](Index i) { return Eigen::Map<const Vec3>(&positions[3 * static_cast<std::size_t>(i)]); };
+  const auto position = [&](Index i) {
+    return Eigen::Map<const Vec3>(&positions[3 * static_cast<std::size_t>(i)]);
+  };
   Vec3 centre = Vec3::Zero();
   double square = 0.0;
   if (space.modes == 6 && nodes > 0) {

@@ -2,7 +2,9 @@
 
 namespace taut {
 
-std::vector<Parallelogram> parallelograms(const BlockPattern& pattern, std::span<const std::uint8_t> sides, std::span<const std::uint8_t> kept) {
+std::vector<Parallelogram> parallelograms(const BlockPattern& pattern,
+                                          std::span<const std::uint8_t> sides,
+                                          std::span<const std::uint8_t> kept) {
   std::vector<Parallelogram> result;
   for (Index a = 0; a < pattern.rows(); ++a)
     for (Index k = pattern.diagonal[a] + 1; k < pattern.row_start[a + 1]; ++k) {
@@ -21,7 +23,8 @@ std::vector<Parallelogram> parallelograms(const BlockPattern& pattern, std::span
       }
       if (count != 2) continue;
       const Index diagonal = pattern.find(common[0], common[1]);
-      if (diagonal >= 0 && kept[diagonal] && !sides[diagonal]) result.push_back({a, common[0], c, common[1], k, pattern.find(c, a)});
+      if (diagonal >= 0 && kept[diagonal] && !sides[diagonal])
+        result.push_back({a, common[0], c, common[1], k, pattern.find(c, a)});
     }
   return result;
 }

@@ -10,8 +10,8 @@
 
 namespace taut {
 
-KrylovResult pcg(const LinearOperator& a, const Preconditioner& m, std::span<const double> b, std::span<double> x,
-                 const KrylovOptions& options) {
+KrylovResult pcg(const LinearOperator& a, const Preconditioner& m, std::span<const double> b,
+                 std::span<double> x, const KrylovOptions& options) {
   const std::size_t n = static_cast<std::size_t>(a.size());
   assert(b.size() == n && x.size() == n);
   KrylovResult result;
@@ -43,25 +43,32 @@ KrylovResult pcg(const LinearOperator& a, const Preconditioner& m, std::span<con
     delta = dot(r, s);
     scale_add(delta / previous, s, c);
     ++result.iterations;
-    if (options.coefficients) options.coefficients->alpha.push_back(alpha), options.coefficients->beta.push_back(delta / previous);
+    if (options.coefficients)
+      options.coefficients->alpha.push_back(alpha),
+          options.coefficients->beta.push_back(delta / previous);
     if (options.observer) options.observer(result.iterations, relative(delta), x);
     if (!std::isfinite(delta)) break;
   }
 
   result.stop_value = relative(delta);
   if (!std::isfinite(delta) || !std::isfinite(delta0)) {
-    result.status = {Outcome::not_finite, fmt::format("the residual is not finite after {} iterations", result.iterations)};
+    result.status = {
+        Outcome::not_finite,
+        fmt::format("the residual is not finite after {} iterations", result.iterations)};
   } else if (delta < 0.0 || delta0 < 0.0) {
     result.status = {Outcome::not_positive_definite,
-                     fmt::format("rᵀ M⁻¹ r = {:.3g} < 0 after {} iterations: the preconditioner is not positive definite",
+                     fmt::format("rᵀ M⁻¹ r = {:.3g} < 0 after {} iterations: the preconditioner is "
+                                 "not positive definite",
                                  std::min(delta, delta0), result.iterations)};
   } else if (delta > limit && result.iterations < options.max_iterations) {
-    result.status = {
-        Outcome::not_positive_definite,
-        fmt::format("a search direction of curvature <= 0 after {} iterations: the matrix is not positive definite", result.iterations)};
+    result.status = {Outcome::not_positive_definite,
+                     fmt::format("a search direction of curvature <= 0 after {} iterations: the "
+                                 "matrix is not positive definite",
+                                 result.iterations)};
   } else if (delta > limit) {
-    result.status = {Outcome::max_iterations, fmt::format("{} iterations reach {:.3g}, not {:.3g}", result.iterations, result.stop_value,
-                                                          options.relative_tolerance)};
+    result.status = {Outcome::max_iterations,
+                     fmt::format("{} iterations reach {:.3g}, not {:.3g}", result.iterations,
+                                 result.stop_value, options.relative_tolerance)};
   }
   return result;
 }

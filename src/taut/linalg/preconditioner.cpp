@@ -16,8 +16,10 @@ namespace {
 constexpr Index nodes_per_task = 4096;
 
 Status bad_diagonal(Index i, double value) {
-  const Outcome outcome = std::isfinite(value) ? Outcome::not_positive_definite : Outcome::not_finite;
-  return {outcome, fmt::format("diagonal entry of unknown {} is {}; it must be positive and finite", i, value)};
+  const Outcome outcome =
+      std::isfinite(value) ? Outcome::not_positive_definite : Outcome::not_finite;
+  return {outcome, fmt::format("diagonal entry of unknown {} is {}; it must be positive and finite",
+                               i, value)};
 }
 
 template <int dim>
@@ -41,8 +43,10 @@ Status bad_diagonal_block(const BlockCsr& a, Index node) {
   const double* block = a.block(node, p.diagonal[node]);
   for (Index r = 0; r < p.dim(node); ++r)
     if (!all_finite({block + r * p.width(node), static_cast<std::size_t>(p.dim(node))}))
-      return {Outcome::not_finite, fmt::format("the diagonal block of node {} is not finite", node)};
-  return {Outcome::not_positive_definite, fmt::format("the diagonal block of node {} is not positive definite", node)};
+      return {Outcome::not_finite,
+              fmt::format("the diagonal block of node {} is not finite", node)};
+  return {Outcome::not_positive_definite,
+          fmt::format("the diagonal block of node {} is not positive definite", node)};
 }
 
 bool invert_small(const double* block, Index stride, Index dim, double* inverse) {
@@ -62,7 +66,8 @@ bool invert_small(const double* block, Index stride, Index dim, double* inverse)
 Status DiagonalPreconditioner::update(const BlockCsr& a) {
   inverse_ = diagonal_of(a);
   for (std::size_t i = 0; i < inverse_.size(); ++i) {
-    if (!(inverse_[i] > 0.0) || !std::isfinite(inverse_[i])) return bad_diagonal(static_cast<Index>(i), inverse_[i]);
+    if (!(inverse_[i] > 0.0) || !std::isfinite(inverse_[i]))
+      return bad_diagonal(static_cast<Index>(i), inverse_[i]);
     inverse_[i] = 1.0 / inverse_[i];
   }
   return {};
@@ -78,7 +83,8 @@ Status BlockDiagonalPreconditioner::update(const BlockCsr& a) {
   const BlockPattern& p = *pattern_;
   inverse_.assign(9 * static_cast<std::size_t>(p.rows()), 0.0);
   for (Index i = 0; i < p.rows(); ++i)
-    if (!invert_small(a.block(i, p.diagonal[i]), p.width(i), p.dim(i), &inverse_[9 * static_cast<std::size_t>(i)]))
+    if (!invert_small(a.block(i, p.diagonal[i]), p.width(i), p.dim(i),
+                      &inverse_[9 * static_cast<std::size_t>(i)]))
       return bad_diagonal_block(a, i);
   return {};
 }

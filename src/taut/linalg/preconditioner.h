@@ -1,10 +1,12 @@
 #pragma once
-// A preconditioner M_p: an approximation of A whose inverse is cheap to apply. It owns what it needs and may outlive the matrix it was
-// built from.
+// A preconditioner M_p: an approximation of A whose inverse is cheap to apply. It owns what it
+// needs and may outlive the matrix it was built from.
 //
-//   update(A)    prepares M_p⁻¹ from the values of A. Not ok: M_p is not positive definite or not finite; say where.
-//   apply(r, z)  z = M_p⁻¹ r, symmetric positive definite in r where conjugate gradients are to use it; r and z do not overlap; does not
-//                allocate after update. One object is used by one thread at a time.
+//   update(A)    prepares M_p⁻¹ from the values of A. Not ok: M_p is not positive definite or not
+//                finite; say where.
+//   apply(r, z)  z = M_p⁻¹ r, symmetric positive definite in r where conjugate gradients are to use
+//                it; r and z do not overlap; does not allocate after update. One object is used by
+//                one thread at a time.
 //   remark()     what a user should know about the last update (a shift that was needed), or empty
 
 #include <memory>
@@ -42,8 +44,8 @@ class DiagonalPreconditioner : public Preconditioner {
   std::vector<double> inverse_;
 };
 
-// M_p = the diagonal blocks of A, one per node (Choi & Ko 2002). On the reduced matrix these are the blocks projected by the constraints
-// (Boxerman & Ascher 2004).
+// M_p = the diagonal blocks of A, one per node (Choi & Ko 2002). On the reduced matrix these are
+// the blocks projected by the constraints (Boxerman & Ascher 2004).
 class BlockDiagonalPreconditioner : public Preconditioner {
  public:
   Status update(const BlockCsr& a) override;
@@ -52,10 +54,12 @@ class BlockDiagonalPreconditioner : public Preconditioner {
 
  private:
   std::shared_ptr<const BlockPattern> pattern_;
-  std::vector<double> inverse_;  // 9 per node, row-major, the leading dim x dim part used with stride dim
+  // 9 per node, row-major, the leading dim x dim part used with stride dim
+  std::vector<double> inverse_;
 };
 
-// Inverse of a symmetric positive definite dim x dim block (dim <= 3) with the given row strides. False if a pivot is not positive.
+// Inverse of a symmetric positive definite dim x dim block (dim <= 3) with the given row strides.
+// False if a pivot is not positive.
 bool invert_small(const double* block, Index stride, Index dim, double* inverse);
 // What is wrong with the diagonal block of a node that invert_small refused.
 Status bad_diagonal_block(const BlockCsr& a, Index node);

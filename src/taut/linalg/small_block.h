@@ -1,19 +1,21 @@
 #pragma once
-// Small row-major blocks. Products of n x n ones, n known to the compiler: the arithmetic of the incomplete factorisations. And a copy.
+// Small row-major blocks. Products of n x n ones, n known to the compiler: the arithmetic of the
+// incomplete factorisations. And a copy.
 
 #include "taut/base/simd.h"
 #include "taut/base/types.h"
 
 namespace taut {
 
-// A 3x3 block out of a row's panel of `width` columns (BlockCsr), rounded to T. What a row reads and writes as a fourth number is in the panel, and
-// written over by the next row.
+// A 3x3 block out of a row's panel of `width` columns (BlockCsr), rounded to T. What a row reads
+// and writes as a fourth number is in the panel, and written over by the next row.
 template <class T>
 TAUT_ALWAYS_INLINE void copy_block_3(const double* from, Index width, T* to) {
   typedef double Doubles __attribute__((vector_size(32), aligned(8), may_alias));
   typedef T Four __attribute__((vector_size(4 * sizeof(T)), aligned(sizeof(T)), may_alias));
   for (Index r = 0; r < 2; ++r)
-    *reinterpret_cast<Four*>(to + 3 * r) = __builtin_convertvector(*reinterpret_cast<const Doubles*>(from + r * width), Four);
+    *reinterpret_cast<Four*>(to + 3 * r) =
+        __builtin_convertvector(*reinterpret_cast<const Doubles*>(from + r * width), Four);
   for (Index c = 0; c < 3; ++c) to[6 + c] = static_cast<T>(from[2 * width + c]);
 }
 

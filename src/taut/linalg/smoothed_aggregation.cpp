@@ -36,7 +36,9 @@ class Hierarchy : public AmgHierarchy {
     while (true) {
       AmgLevel<c, c>& level = coarse_.back();
       if (level.prepare() >= 0) return not_definite();
-      if (level.nodes() <= options_.coarsest_nodes || static_cast<int>(coarse_.size()) + 1 >= options_.most_levels) break;
+      if (level.nodes() <= options_.coarsest_nodes ||
+          static_cast<int>(coarse_.size()) + 1 >= options_.most_levels)
+        break;
       AmgLevel<c, c> next;
       level.coarsen(options_.strength, next);
       if (next.nodes() == level.nodes()) break;
@@ -47,13 +49,16 @@ class Hierarchy : public AmgHierarchy {
 
   void apply(std::span<const double> r, std::span<double> z) const override {
     std::fill(padded_b_.begin(), padded_b_.end(), 0.0);
-    for (std::size_t p = 0; p < node_.size(); ++p) std::copy_n(&r[dof_[p]], dim_[p], &padded_b_[p * n]);
+    for (std::size_t p = 0; p < node_.size(); ++p)
+      std::copy_n(&r[dof_[p]], dim_[p], &padded_b_[p * n]);
     cycle(finest_, padded_b_, padded_x_, 0);
-    for (std::size_t p = 0; p < node_.size(); ++p) std::copy_n(&padded_x_[p * n], dim_[p], &z[dof_[p]]);
+    for (std::size_t p = 0; p < node_.size(); ++p)
+      std::copy_n(&padded_x_[p * n], dim_[p], &z[dof_[p]]);
   }
 
   Offset bytes() const override {
-    Offset total = finest_.bytes() + static_cast<Offset>(coarsest_.rows() * coarsest_.cols() * sizeof(double));
+    Offset total =
+        finest_.bytes() + static_cast<Offset>(coarsest_.rows() * coarsest_.cols() * sizeof(double));
     for (const auto& level : coarse_) total += level.bytes();
     return total;
   }
@@ -71,7 +76,8 @@ class Hierarchy : public AmgHierarchy {
 
  private:
   static Status not_definite() {
-    return {Outcome::not_positive_definite, "multigrid: a coarse matrix is not positive definite, so the matrix is not"};
+    return {Outcome::not_positive_definite,
+            "multigrid: a coarse matrix is not positive definite, so the matrix is not"};
   }
 
   // The finest level: nodes with unknowns only, padded.
@@ -95,26 +101,31 @@ class Hierarchy : public AmgHierarchy {
       Modes& modes = finest_.modes.emplace_back(Modes::Zero());
       for (Index r = 0; r < p.dim(i); ++r)
         for (Index m = 0; m < c; ++m)
-          modes(r, m) = space.modes > 0 ? space.values[static_cast<std::size_t>(p.dof_start[i] + r) * c + m] : static_cast<double>(r == m);
+          modes(r, m) = space.modes > 0
+                            ? space.values[static_cast<std::size_t>(p.dof_start[i] + r) * c + m]
+                            : static_cast<double>(r == m);
     }
     padded_b_.resize(finest_.size()), padded_x_.resize(finest_.size());
   }
 
   Status factorize_coarsest() {
     const AmgLevel<c, c>& last = coarse_.back();
-    Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(static_cast<Index>(last.size()), static_cast<Index>(last.size()));
+    Eigen::MatrixXd dense =
+        Eigen::MatrixXd::Zero(static_cast<Index>(last.size()), static_cast<Index>(last.size()));
     for (Index i = 0; i < last.nodes(); ++i)
       for (Index k = last.a.start[i]; k < last.a.start[i + 1]; ++k)
         dense.template block<c, c>(c * i, c * last.a.column[k]) = last.a.values[k];
     coarsest_.compute(dense);
     if (coarsest_.info() != Eigen::Success || !dense.allFinite()) return not_definite();
-    for (const auto& level : coarse_) level_b_.emplace_back(level.size()), level_x_.emplace_back(level.size());
+    for (const auto& level : coarse_)
+      level_b_.emplace_back(level.size()), level_x_.emplace_back(level.size());
     return {};
   }
 
   // x = one V-cycle for b from zero; the next level is coarse_[below].
   template <class Level>
-  void cycle(const Level& level, std::span<const double> b, std::span<double> x, std::size_t below) const {
+  void cycle(const Level& level, std::span<const double> b, std::span<double> x,
+             std::size_t below) const {
     std::fill(x.begin(), x.end(), 0.0);
     level.smooth(options_, b, x, true);
     multiply(level.a, x.data(), level.residual.data());
@@ -123,8 +134,10 @@ class Hierarchy : public AmgHierarchy {
     if (below + 1 < coarse_.size()) {
       cycle(coarse_[below], level_b_[below], level_x_[below], below + 1);
     } else {
-      Eigen::Map<Eigen::VectorXd>(level_x_[below].data(), static_cast<Index>(level_x_[below].size())) =
-          coarsest_.solve(Eigen::Map<const Eigen::VectorXd>(level_b_[below].data(), static_cast<Index>(level_b_[below].size())));
+      Eigen::Map<Eigen::VectorXd>(level_x_[below].data(),
+                                  static_cast<Index>(level_x_[below].size())) =
+          coarsest_.solve(Eigen::Map<const Eigen::VectorXd>(
+              level_b_[below].data(), static_cast<Index>(level_b_[below].size())));
     }
     multiply(level.prolongator, level_x_[below].data(), x.data(), true);
     level.smooth(options_, b, x, false);
@@ -164,9 +177,15 @@ Status SmoothedAggregation::update(const BlockCsr& a) {
   return hierarchy_->build(a, space_);
 }
 
-void SmoothedAggregation::apply(std::span<const double> r, std::span<double> z) const { hierarchy_->apply(r, z); }
+void SmoothedAggregation::apply(std::span<const double> r, std::span<double> z) const {
+  hierarchy_->apply(r, z);
+}
 Offset SmoothedAggregation::bytes() const { return hierarchy_ ? hierarchy_->bytes() : 0; }
-std::vector<Index> SmoothedAggregation::level_nodes() const { return hierarchy_ ? hierarchy_->level_nodes() : std::vector<Index>(); }
-double SmoothedAggregation::operator_complexity() const { return hierarchy_ ? hierarchy_->operator_complexity() : 1.0; }
+std::vector<Index> SmoothedAggregation::level_nodes() const {
+  return hierarchy_ ? hierarchy_->level_nodes() : std::vector<Index>();
+}
+double SmoothedAggregation::operator_complexity() const {
+  return hierarchy_ ? hierarchy_->operator_complexity() : 1.0;
+}
 
 }  // namespace taut

@@ -1,18 +1,22 @@
 #pragma once
-// Algebraic multigrid by smoothed aggregation, one V-cycle as M_p⁻¹ (Vaněk, Mandel & Brezina 1996; for cloth: Tamstorf, Jones & McCormick
-// 2015).
+// Algebraic multigrid by smoothed aggregation, one V-cycle as M_p⁻¹ (Vaněk, Mandel & Brezina 1996;
+// for cloth: Tamstorf, Jones & McCormick 2015).
 //
-//   groups of nodes -> P̂: the near-null space of each group, orthonormalised -> P = (I - ω D⁻¹ A) P̂ -> A_coarse = Pᵀ A P -> ...
+//   groups of nodes -> P̂: the near-null space of each group, orthonormalised -> P = (I - ω D⁻¹ A)
+//   P̂ -> A_coarse = Pᵀ A P -> ...
 //
 //   D        diagonal blocks of A        ω = 4 / (3 λ), λ ≈ λmax(D⁻¹A)
-//   smoother Chebyshev polynomial of degree `smoother_degree` in D⁻¹A over [λ/`smoother_range`, 1.1 λ], before and after the coarse
-//            correction: symmetric, so M_p suits conjugate gradients; parallel, with the same bits for any number of threads
+//   smoother Chebyshev polynomial of degree `smoother_degree` in D⁻¹A over [λ/`smoother_range`, 1.1
+//   λ], before and after the coarse
+//            correction: symmetric, so M_p suits conjugate gradients; parallel, with the same bits
+//            for any number of threads
 //   coarsest dense Cholesky, at `coarsest_nodes` nodes or fewer
 //
-// The near-null space makes the method: with the rigid motions (linalg/near_null_space.h) a coarse node has six unknowns, three
-// translations and three rotations. Without one given, it is a translation along each unknown's axis. Dependent columns in a group (a
-// straight line of nodes does not resist three rotations) are dropped. Nodes of 0 to 3 unknowns; as scalars where no node has more than
-// one.
+// The near-null space makes the method: with the rigid motions (linalg/near_null_space.h) a coarse
+// node has six unknowns, three translations and three rotations. Without one given, it is a
+// translation along each unknown's axis. Dependent columns in a group (a straight line of nodes
+// does not resist three rotations) are dropped. Nodes of 0 to 3 unknowns; as scalars where no node
+// has more than one.
 
 #include "taut/linalg/near_null_space.h"
 #include "taut/linalg/preconditioner.h"
@@ -20,7 +24,8 @@
 namespace taut {
 
 struct AmgOptions {
-  double strength = 0.0;  // neighbours i, j count as coupled when |A_ij| >= strength sqrt(|A_ii| |A_jj|) (Frobenius norms)
+  // neighbours i, j count as coupled when |A_ij| >= strength sqrt(|A_ii| |A_jj|) (Frobenius norms)
+  double strength = 0.0;
   int smoother_degree = 2;
   double smoother_range = 10.0;
   Index coarsest_nodes = 40;
@@ -39,7 +44,8 @@ class SmoothedAggregation : public Preconditioner {
   void apply(std::span<const double> r, std::span<double> z) const override;
   Offset bytes() const override;
 
-  // For reports and tests: nodes of each level, finest first; blocks of all levels' matrices over those of the finest.
+  // For reports and tests: nodes of each level, finest first; blocks of all levels' matrices over
+  // those of the finest.
   std::vector<Index> level_nodes() const;
   double operator_complexity() const;
 

@@ -13,8 +13,10 @@ namespace {
 std::map<std::string, CholeskyFactory>& factories() {
   static std::map<std::string, CholeskyFactory> known{
       {"eigen", [] { return std::make_unique<EigenCholesky>(); }},
-      {"block", [] { return std::make_unique<BlockCholesky>(CholeskyPrecision::double_precision); }},
-      {"block_single", [] { return std::make_unique<BlockCholesky>(CholeskyPrecision::single_precision); }},
+      {"block",
+       [] { return std::make_unique<BlockCholesky>(CholeskyPrecision::double_precision); }},
+      {"block_single",
+       [] { return std::make_unique<BlockCholesky>(CholeskyPrecision::single_precision); }},
   };
   return known;
 }
@@ -31,7 +33,9 @@ Status SparseCholesky::solve_permuted(std::span<const double> b, std::span<doubl
   return status;
 }
 
-void register_cholesky(const std::string& name, CholeskyFactory factory) { factories()[name] = std::move(factory); }
+void register_cholesky(const std::string& name, CholeskyFactory factory) {
+  factories()[name] = std::move(factory);
+}
 
 std::unique_ptr<SparseCholesky> make_cholesky(const std::string& name) {
   const auto it = factories().find(name);
@@ -45,7 +49,8 @@ std::vector<std::string> cholesky_names() {
 }
 
 void lower_triangle(const BlockCsr& a, ScalarCsc& csc) {
-  // A is symmetric, so the upper triangle row by row is the lower one column by column: each block row becomes dim(i) columns.
+  // A is symmetric, so the upper triangle row by row is the lower one column by column: each block
+  // row becomes dim(i) columns.
   const BlockPattern& p = *a.pattern;
   csc.column_start.resize(static_cast<std::size_t>(p.dofs()) + 1);
   csc.column_start[0] = 0;

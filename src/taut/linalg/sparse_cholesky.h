@@ -1,15 +1,18 @@
 #pragma once
-// A sparse Cholesky factorisation P A Pᵀ = L Lᵀ (or L D Lᵀ), in three steps so that each can be kept while the next is redone.
+// A sparse Cholesky factorisation P A Pᵀ = L Lᵀ (or L D Lᵀ), in three steps so that each can be
+// kept while the next is redone.
 //
 //   analyze(A)      ordering and symbolic work; reads the pattern only
 //   factorize(A)    numbers; the pattern must be the analysed one (asserted)
 //   solve(b, x)     x = A⁻¹ b; b and x may be the same memory
-//   permutation()   perm[k] = which unknown of A is k-th in the factor; empty when the backend does not tell
+//   permutation()   perm[k] = which unknown of A is k-th in the factor; empty when the backend does
+//                   not tell
 //   solve_permuted  the same solve for vectors already in the factor's order
 //
-// Implementations: Taut's own (linalg/block_cholesky.h), Eigen's SimplicialLDLT (here), CHOLMOD (library taut_cholmod, GPL in its supernodal part). They are found by name, so that
-// libtaut links no GPL code: a program that wants CHOLMOD calls taut::register_cholmod() (taut_cholmod/cholmod.h).
-// One object is used by one thread at a time.
+// Implementations: Taut's own (linalg/block_cholesky.h), Eigen's SimplicialLDLT (here), CHOLMOD
+// (library taut_cholmod, GPL in its supernodal part). They are found by name, so that libtaut links
+// no GPL code: a program that wants CHOLMOD calls taut::register_cholmod()
+// (taut_cholmod/cholmod.h). One object is used by one thread at a time.
 
 #include <functional>
 #include <memory>
@@ -44,10 +47,11 @@ class SparseCholesky {
 
 using CholeskyFactory = std::function<std::unique_ptr<SparseCholesky>()>;
 
-// Makes a backend known under `name`; a later one of the same name replaces the earlier. Not while solvers are being made.
+// Makes a backend known under `name`; a later one of the same name replaces the earlier. Not while
+// solvers are being made.
 void register_cholesky(const std::string& name, CholeskyFactory factory);
-// The backend's object, or null when it is not registered. "eigen", "block" and "block_single" (Taut's own
-// in double and single precision) are always there.
+// The backend's object, or null when it is not registered. "eigen", "block" and "block_single"
+// (Taut's own in double and single precision) are always there.
 std::unique_ptr<SparseCholesky> make_cholesky(const std::string& name);
 std::vector<std::string> cholesky_names();
 
@@ -56,7 +60,8 @@ struct ScalarCsc {
   std::vector<Index> column_start, row;
   std::vector<double> value;
 };
-// The lower triangle of A (rows >= columns), or, the same arrays read as rows, its upper triangle by rows.
+// The lower triangle of A (rows >= columns), or, the same arrays read as rows, its upper triangle
+// by rows.
 void lower_triangle(const BlockCsr& a, ScalarCsc& csc);
 
 }  // namespace taut

@@ -9,7 +9,8 @@ namespace taut {
 
 namespace {
 
-// With D' = D/ω: M = (I + L D'⁻¹) D'/(2-ω) (I + L D'⁻¹)ᵀ. False if the diagonal block of node `broken` is not positive definite.
+// With D' = D/ω: M = (I + L D'⁻¹) D'/(2-ω) (I + L D'⁻¹)ᵀ. False if the diagonal block of node
+// `broken` is not positive definite.
 template <int n>
 bool fill(const BlockCsr& a, double omega, BlockLdu& factor, Index& broken) {
   const TriangularLayout& layout = factor.layout();
@@ -36,7 +37,8 @@ BlockSsor::BlockSsor(double omega) : omega_(omega) { assert(omega > 0.0 && omega
 Status BlockSsor::update(const BlockCsr& a) {
   factor_.set_pattern(a.pattern, true);
   Index broken = -1;
-  const bool filled = factor_.layout().block == 1 ? fill<1>(a, omega_, factor_, broken) : fill<3>(a, omega_, factor_, broken);
+  const bool filled = factor_.layout().block == 1 ? fill<1>(a, omega_, factor_, broken)
+                                                  : fill<3>(a, omega_, factor_, broken);
   return filled ? Status{} : bad_diagonal_block(a, broken);
 }
 

@@ -18,7 +18,8 @@ TriangleMesh make_grid(const GridShape& shape) {
     }
   for (Index j = 0; j + 1 < shape.nv; ++j)
     for (Index i = 0; i + 1 < shape.nu; ++i) {
-      const Index a = shape.node(i, j), b = shape.node(i + 1, j), c = shape.node(i + 1, j + 1), d = shape.node(i, j + 1);
+      const Index a = shape.node(i, j), b = shape.node(i + 1, j), c = shape.node(i + 1, j + 1),
+                  d = shape.node(i, j + 1);
       add_split_quad({a, b, c, d}, (i + j) % 2 == 0, mesh.triangles);
     }
   return mesh;

@@ -1,5 +1,6 @@
 #pragma once
-// A checksum of a mesh's vertices (m) and triangles, what a simulation takes from a mesh file: tells whether the file has changed.
+// A checksum of a mesh's vertices (m) and triangles, what a simulation takes from a mesh file:
+// tells whether the file has changed.
 
 #include "taut/base/checksum.h"
 #include "taut/mesh/triangle_mesh.h"

@@ -40,7 +40,8 @@ void add_hinges(const Side* side, std::size_t count, Topology& topology) {
     if (first.opposite == second.opposite)
       ++topology.folded_hinges;
     else
-      topology.hinges.push_back({first.edge, {first.opposite, second.opposite}, {first.triangle, second.triangle}});
+      topology.hinges.push_back(
+          {first.edge, {first.opposite, second.opposite}, {first.triangle, second.triangle}});
   }
 }
 

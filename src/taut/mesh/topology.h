@@ -1,8 +1,10 @@
 #pragma once
-// Who neighbours whom on a triangle mesh: the edges that carry stretch springs, the hinges that carry bend springs.
+// Who neighbours whom on a triangle mesh: the edges that carry stretch springs, the hinges that
+// carry bend springs.
 //
 //   edge          two vertices a < b of some triangle; each once, sorted by (a, b)
-//   hinge         an edge with two of its triangles; `opposite` are their third vertices (the ends of a bend spring across the edge)
+//   hinge         an edge with two of its triangles; `opposite` are their third vertices (the ends
+//                 of a bend spring across the edge)
 //
 //            opposite[0]
 //              /    \          .
@@ -11,13 +13,15 @@
 //            opposite[1]
 //
 //   boundary edge      in one triangle
-//   non-manifold edge  in k > 2 triangles, as where a pocket is sewn onto a sheet: it gets the k - 1 hinges of triangles that follow
-//                      each other in the mesh's order, so that no layer is left without bending; refusing would forbid real garments
-// A hinge whose two opposite vertices are the same (a doubled triangle) has no length and is left out; it is counted in `folded_hinges`.
-// Triangles that name a vertex twice have no shape and are left out. Triangles of no area with three vertices count.
+//   non-manifold edge  in k > 2 triangles, as where a pocket is sewn onto a sheet: it gets the k -
+//                      1 hinges of triangles that follow each other in the mesh's order, so that no
+//                      layer is left without bending; refusing would forbid real garments
+// A hinge whose two opposite vertices are the same (a doubled triangle) has no length and is left
+// out; it is counted in `folded_hinges`. Triangles that name a vertex twice have no shape and are
+// left out. Triangles of no area with three vertices count.
 //
-// Edges and hinges do not depend on the thread count. Asserts that vertex indices are in range (mesh readers guarantee it).
-// O(T log T) time and about 100 bytes a triangle.
+// Edges and hinges do not depend on the thread count. Asserts that vertex indices are in range
+// (mesh readers guarantee it). O(T log T) time and about 100 bytes a triangle.
 
 #include <array>
 #include <string>
@@ -51,20 +55,24 @@ Topology build_topology(const TriangleMesh& mesh);
 
 // Area of a triangle, m^2.
 double triangle_area(const TriangleMesh& mesh, Index triangle);
-// Each vertex's share of the surface: a third of each of its triangles, m^2. The sum is the mesh's area.
+// Each vertex's share of the surface: a third of each of its triangles, m^2. The sum is the mesh's
+// area.
 std::vector<double> vertex_areas(const TriangleMesh& mesh);
 
 // What a mesh must not have if it is to be cloth. Empty lists: nothing found.
 struct MeshFaults {
-  std::vector<Index> repeated_vertex;    // triangles that name a vertex twice
-  std::vector<Index> zero_area;          // other triangles: twice the area <= 1e-10 x (longest edge)^2, so one angle is 0 to rounding
+  std::vector<Index> repeated_vertex;  // triangles that name a vertex twice
+  // other triangles: twice the area <= 1e-10 x (longest edge)^2, so one angle is 0 to rounding
+  std::vector<Index> zero_area;
   std::vector<Index> isolated_vertices;  // in no triangle: such a node would have no mass
-  bool any() const { return !repeated_vertex.empty() || !zero_area.empty() || !isolated_vertices.empty(); }
+  bool any() const {
+    return !repeated_vertex.empty() || !zero_area.empty() || !isolated_vertices.empty();
+  }
 };
 MeshFaults find_faults(const TriangleMesh& mesh);
 
-// Throws InputError("NAME: ...") that names the first faulty triangle or vertex (counted from 1, as OBJ does), how many there are, and the
-// remedy.
+// Throws InputError("NAME: ...") that names the first faulty triangle or vertex (counted from 1, as
+// OBJ does), how many there are, and the remedy.
 void check_cloth_mesh(const TriangleMesh& mesh, const std::string& name);
 
 }  // namespace taut

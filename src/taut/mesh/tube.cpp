@@ -11,8 +11,10 @@ TriangleMesh make_tube(const TubeShape& shape) {
   TriangleMesh mesh;
   for (Index j = 0; j < shape.along; ++j)
     for (Index i = 0; i < shape.around; ++i) {
-      const double turn = double(i) / shape.around, angle = 2.0 * std::numbers::pi * turn, v = double(j) / (shape.along - 1);
-      mesh.positions.emplace_back(shape.radius * std::cos(angle), shape.radius * std::sin(angle), shape.height * (v - 0.5));
+      const double turn = double(i) / shape.around, angle = 2.0 * std::numbers::pi * turn,
+                   v = double(j) / (shape.along - 1);
+      mesh.positions.emplace_back(shape.radius * std::cos(angle), shape.radius * std::sin(angle),
+                                  shape.height * (v - 0.5));
       // The texture runs there and back: a seam would need nodes twice.
       mesh.texcoords.emplace_back(1.0 - std::abs(2.0 * turn - 1.0), v);
     }

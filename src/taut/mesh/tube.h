@@ -1,6 +1,6 @@
 #pragma once
-// A closed tube of `around` x `along` nodes, its axis the z axis: node (i, j), i < around, j < along, has index j * around + i and stands
-// at
+// A closed tube of `around` x `along` nodes, its axis the z axis: node (i, j), i < around, j <
+// along, has index j * around + i and stands at
 //
 //   (r cos φ, r sin φ, height (j/(along-1) - 1/2)),   φ = 2π i / around      m
 //

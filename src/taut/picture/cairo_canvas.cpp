@@ -16,14 +16,17 @@ cairo_status_t append(void* closure, const unsigned char* data, unsigned int len
 }  // namespace
 
 void check_cairo(cairo_status_t status, const char* what) {
-  if (status != CAIRO_STATUS_SUCCESS) throw InputError(fmt::format("{}: {}", what, cairo_status_to_string(status)));
+  if (status != CAIRO_STATUS_SUCCESS)
+    throw InputError(fmt::format("{}: {}", what, cairo_status_to_string(status)));
 }
 
 CairoSurface make_canvas(int width, int height) {
   CairoSurface canvas(cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height));
   if (cairo_surface_status(canvas.get()) != CAIRO_STATUS_SUCCESS)
-    throw InputError(fmt::format("a picture of {} x {} pixels cannot be made: {}; at most 32767 pixels a side, and memory for it", width,
-                                 height, cairo_status_to_string(cairo_surface_status(canvas.get()))));
+    throw InputError(
+        fmt::format("a picture of {} x {} pixels cannot be made: {}; at most 32767 pixels a side, "
+                    "and memory for it",
+                    width, height, cairo_status_to_string(cairo_surface_status(canvas.get()))));
   return canvas;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
-// Owners of cairo's handles, and cairo's errors as exceptions. Only for the sources of this folder: the public headers do not show cairo.
+// Owners of cairo's handles, and cairo's errors as exceptions. Only for the sources of this folder:
+// the public headers do not show cairo.
 
 #include <cairo.h>
 
@@ -17,7 +18,8 @@ struct CairoDeleter {
 using CairoSurface = std::unique_ptr<cairo_surface_t, CairoDeleter>;
 using CairoContext = std::unique_ptr<cairo_t, CairoDeleter>;
 
-// An opaque drawing surface in memory. Throws InputError when cairo cannot make one of this size (its limit is 32767 pixels a side).
+// An opaque drawing surface in memory. Throws InputError when cairo cannot make one of this size
+// (its limit is 32767 pixels a side).
 CairoSurface make_canvas(int width, int height);
 
 // A copy of the image as a cairo surface.

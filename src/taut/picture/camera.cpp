@@ -21,7 +21,8 @@ double tangent_of_half(double degrees) { return std::tan(degrees * std::numbers:
 
 void check_field_of_view(double degrees) {
   if (!(degrees > 0.0 && degrees < 180.0))
-    throw InputError(fmt::format("camera: field of view {} degrees, expected between 0 and 180", degrees));
+    throw InputError(
+        fmt::format("camera: field of view {} degrees, expected between 0 and 180", degrees));
 }
 
 void check_options(const FramingOptions& options) {
@@ -29,9 +30,11 @@ void check_options(const FramingOptions& options) {
   if (!options.direction.allFinite() || options.direction.isZero())
     throw InputError("camera: the view direction must be finite and not zero");
   if (!(options.aspect > 0.0) || !std::isfinite(options.aspect))
-    throw InputError(fmt::format("camera: aspect {}, expected width / height above 0", options.aspect));
+    throw InputError(
+        fmt::format("camera: aspect {}, expected width / height above 0", options.aspect));
   if (!(options.margin >= 0.0 && options.margin <= 0.45))
-    throw InputError(fmt::format("camera: margin {}, expected a share of the picture from 0 to 0.45", options.margin));
+    throw InputError(fmt::format(
+        "camera: margin {}, expected a share of the picture from 0 to 0.45", options.margin));
 }
 
 // Along one axis of the picture: the two sides of the view wedge that touch the points.
@@ -55,10 +58,13 @@ CameraAxes camera_axes(const Camera& camera) {
   check_field_of_view(camera.vertical_field_of_view_deg);
   CameraAxes axes;
   axes.forward = camera.target - camera.eye;
-  if (!(axes.forward.norm() > 0.0)) throw InputError("camera: eye and target are the same point, expected two different ones");
+  if (!(axes.forward.norm() > 0.0))
+    throw InputError("camera: eye and target are the same point, expected two different ones");
   axes.forward.normalize();
   axes.right = axes.forward.cross(camera.up.stableNormalized());
-  if (axes.right.norm() < 1e-6) axes.right = axes.forward.cross(std::abs(axes.forward.y()) < 0.9 ? Vec3::UnitY() : Vec3::UnitX());
+  if (axes.right.norm() < 1e-6)
+    axes.right =
+        axes.forward.cross(std::abs(axes.forward.y()) < 0.9 ? Vec3::UnitY() : Vec3::UnitX());
   axes.right.normalize();
   axes.up = axes.right.cross(axes.forward);
   return axes;
@@ -77,7 +83,9 @@ Camera frame_camera(std::span<const Vec3> points, const FramingOptions& options)
   if (points.empty()) throw InputError("camera: there is nothing to frame");
   BoundingBox box;
   for (const Vec3& p : points) {
-    if (!p.allFinite()) throw InputError(fmt::format("camera: a point to frame is ({}, {}, {}), expected finite", p.x(), p.y(), p.z()));
+    if (!p.allFinite())
+      throw InputError(fmt::format("camera: a point to frame is ({}, {}, {}), expected finite",
+                                   p.x(), p.y(), p.z()));
     box.extend(p);
   }
   if (box.diagonal().norm() < smallest_extent) {
@@ -85,7 +93,8 @@ Camera frame_camera(std::span<const Vec3> points, const FramingOptions& options)
     return frame_camera(BoundingBox(box.center() - half, box.center() + half), options);
   }
 
-  const CameraAxes axes = camera_axes({options.direction, Vec3::Zero(), Vec3::UnitZ(), options.vertical_field_of_view_deg});
+  const CameraAxes axes = camera_axes(
+      {options.direction, Vec3::Zero(), Vec3::UnitZ(), options.vertical_field_of_view_deg});
   const double inner = 1.0 - 2.0 * options.margin;
   const double tangent = tangent_of_half(options.vertical_field_of_view_deg) * inner;
   Wedge across{tangent * options.aspect}, upright{tangent};
@@ -97,18 +106,22 @@ Camera frame_camera(std::span<const Vec3> points, const FramingOptions& options)
     nearest = std::min(nearest, axes.forward.dot(d));
   }
   // Points seen exactly end-on would let the eye touch them: stay a little in front of the nearest.
-  const double forward = std::min({across.closest(), upright.closest(), nearest - 1e-2 * box.diagonal().norm()});
+  const double forward =
+      std::min({across.closest(), upright.closest(), nearest - 1e-2 * box.diagonal().norm()});
   Camera camera;
   camera.vertical_field_of_view_deg = options.vertical_field_of_view_deg;
-  camera.eye = box.center() + across.centre() * axes.right + upright.centre() * axes.up + forward * axes.forward;
+  camera.eye = box.center() + across.centre() * axes.right + upright.centre() * axes.up +
+               forward * axes.forward;
   camera.target = camera.eye - forward * axes.forward;
   return camera;
 }
 
 Camera frame_camera(const BoundingBox& box, const FramingOptions& options) {
-  if (box.isEmpty()) throw InputError("camera: the bounding box is empty, there is nothing to frame");
+  if (box.isEmpty())
+    throw InputError("camera: the bounding box is empty, there is nothing to frame");
   std::array<Vec3, 8> corners;
-  for (int c = 0; c < 8; ++c) corners[static_cast<std::size_t>(c)] = box.corner(static_cast<BoundingBox::CornerType>(c));
+  for (int c = 0; c < 8; ++c)
+    corners[static_cast<std::size_t>(c)] = box.corner(static_cast<BoundingBox::CornerType>(c));
   return frame_camera(std::span<const Vec3>(corners), options);
 }
 

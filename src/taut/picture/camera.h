@@ -1,14 +1,16 @@
 #pragma once
 // A pinhole camera and its automatic framing.
 //
-//   image plane   pixel (x, y) of a width x height picture, (0, 0) the top left corner of the picture, y downwards
+//   image plane   pixel (x, y) of a width x height picture, (0, 0) the top left corner of the
+//                 picture, y downwards
 //   eye, target   m: where the camera is, and the point in the middle of the picture
 //   up            no unit: the direction that points upwards in the picture, not along target - eye
 //   fov           degrees: the full vertical angle of view
 //
-// Framing solves for the eye exactly. With the points' coordinates (r, u, f) along right, up and forward, and tx, ty the tangents of the
-// half angles, a point is inside when |r - e_r| <= tx (f - e_f) and |u - e_u| <= ty (f - e_f); the largest e_f that all points allow is the
-// closest camera, and e_r, e_u put the margins left/right and below/above equal.
+// Framing solves for the eye exactly. With the points' coordinates (r, u, f) along right, up and
+// forward, and tx, ty the tangents of the half angles, a point is inside when |r - e_r| <= tx (f -
+// e_f) and |u - e_u| <= ty (f - e_f); the largest e_f that all points allow is the closest camera,
+// and e_r, e_u put the margins left/right and below/above equal.
 
 #include <Eigen/Geometry>
 #include <span>
@@ -29,12 +31,13 @@ struct CameraAxes {
   Vec3 right, up, forward;
 };
 
-// Throws InputError when eye, target, up or the field of view are not finite, eye and target coincide, or the field of view is not in
-// (0, 180) degrees. An `up` along the view is replaced by another axis.
+// Throws InputError when eye, target, up or the field of view are not finite, eye and target
+// coincide, or the field of view is not in (0, 180) degrees. An `up` along the view is replaced by
+// another axis.
 CameraAxes camera_axes(const Camera& camera);
 
-// Where a point falls in the picture, in pixels, and its depth (m) along forward; behind the camera when depth <= 0 (x and y then mean
-// nothing).
+// Where a point falls in the picture, in pixels, and its depth (m) along forward; behind the camera
+// when depth <= 0 (x and y then mean nothing).
 struct Projection {
   double x = 0.0, y = 0.0, depth = 0.0;
 };
@@ -43,14 +46,17 @@ Projection project(const Camera& camera, const Vec3& point, int width, int heigh
 using BoundingBox = Eigen::AlignedBox3d;  // empty by default; extend() with points or boxes
 
 struct FramingOptions {
-  Vec3 direction = Vec3(0.55, -1.0, 0.42);  // from the target to the eye, any length: a three-quarter view from the front, Z up
-  double aspect = 16.0 / 9.0;               // width / height of the picture
-  double margin = 0.05;                     // share of the picture kept free along each border, in [0, 0.45]
+  // from the target to the eye, any length: a three-quarter view from the front, Z up
+  Vec3 direction = Vec3(0.55, -1.0, 0.42);
+  double aspect = 16.0 / 9.0;  // width / height of the picture
+  // share of the picture kept free along each border, in [0, 0.45]
+  double margin = 0.05;
   double vertical_field_of_view_deg = 28.0;
 };
 
-// The closest camera in the given direction that has the whole box (over all frames of a run) inside the margins. A box of no extent is
-// framed as if 1 m wide. Throws InputError when the box is empty or not finite, or an option is out of range.
+// The closest camera in the given direction that has the whole box (over all frames of a run)
+// inside the margins. A box of no extent is framed as if 1 m wide. Throws InputError when the box
+// is empty or not finite, or an option is out of range.
 Camera frame_camera(const BoundingBox& box, const FramingOptions& options = {});
 
 // The same for points: tighter than their box.

@@ -21,9 +21,13 @@ struct Layout {
   double title_size = 0.0, label_size = 0.0;
 
   int width() const { return 2 * margin + columns * cell_width + (columns - 1) * gap; }
-  int height() const { return 2 * margin + title_height + rows * (cell_height + label_height) + (rows - 1) * gap; }
+  int height() const {
+    return 2 * margin + title_height + rows * (cell_height + label_height) + (rows - 1) * gap;
+  }
   int left(int tile) const { return margin + tile % columns * (cell_width + gap); }
-  int top(int tile) const { return margin + title_height + tile / columns * (cell_height + label_height + gap); }
+  int top(int tile) const {
+    return margin + title_height + tile / columns * (cell_height + label_height + gap);
+  }
 };
 
 Layout make_layout(std::span<const Tile> tiles, bool has_title, int columns) {
@@ -54,7 +58,8 @@ double text_width(cairo_t* context, const std::string& text) {
 
 // The text without its last character (which may take several bytes in UTF-8).
 void drop_last_character(std::string& text) {
-  while (!text.empty() && (static_cast<unsigned char>(text.back()) & 0xC0U) == 0x80U) text.pop_back();
+  while (!text.empty() && (static_cast<unsigned char>(text.back()) & 0xC0U) == 0x80U)
+    text.pop_back();
   if (!text.empty()) text.pop_back();
 }
 
@@ -66,8 +71,10 @@ std::string fitted(cairo_t* context, const std::string& text, double room) {
 }
 
 // One line, its vertical middle at `middle`.
-void draw_text(cairo_t* context, const std::string& text, double left, double middle, double room, double size, bool bold) {
-  cairo_select_font_face(context, "sans-serif", CAIRO_FONT_SLANT_NORMAL, bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
+void draw_text(cairo_t* context, const std::string& text, double left, double middle, double room,
+               double size, bool bold) {
+  cairo_select_font_face(context, "sans-serif", CAIRO_FONT_SLANT_NORMAL,
+                         bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
   cairo_set_font_size(context, size);
   cairo_font_extents_t font;
   cairo_font_extents(context, &font);
@@ -79,13 +86,15 @@ void draw_text(cairo_t* context, const std::string& text, double left, double mi
 
 void draw_tile(cairo_t* context, const Tile& tile, const Layout& layout, int number) {
   const int left = layout.left(number), top = layout.top(number);
-  const int x = left + (layout.cell_width - tile.image.width) / 2, y = top + (layout.cell_height - tile.image.height) / 2;
+  const int x = left + (layout.cell_width - tile.image.width) / 2,
+            y = top + (layout.cell_height - tile.image.height) / 2;
   const detail::CairoSurface picture = detail::to_cairo(tile.image);
   cairo_set_source_surface(context, picture.get(), x, y);
   cairo_rectangle(context, x, y, tile.image.width, tile.image.height);
   cairo_fill(context);
   if (!tile.label.empty())
-    draw_text(context, tile.label, left, top + layout.cell_height + 0.5 * layout.label_height, layout.cell_width, layout.label_size, false);
+    draw_text(context, tile.label, left, top + layout.cell_height + 0.5 * layout.label_height,
+              layout.cell_width, layout.label_size, false);
 }
 
 }  // namespace
@@ -97,18 +106,21 @@ int contact_sheet_columns(int tile_count) {
   return tile_count % start != 0 && tile_count % (start + 1) == 0 ? start + 1 : start;
 }
 
-void write_contact_sheet(const std::filesystem::path& path, std::span<const Tile> tiles, const std::string& title, int columns) {
+void write_contact_sheet(const std::filesystem::path& path, std::span<const Tile> tiles,
+                         const std::string& title, int columns) {
   if (tiles.empty()) throw InputError("contact sheet: no tiles, expected at least one");
-  for (std::size_t i = 0; i < tiles.size(); ++i) check_image(tiles[i].image, fmt::format("contact sheet: tile {}", i).c_str());
+  for (std::size_t i = 0; i < tiles.size(); ++i)
+    check_image(tiles[i].image, fmt::format("contact sheet: tile {}", i).c_str());
   const Layout layout = make_layout(tiles, !title.empty(), columns);
   const detail::CairoSurface canvas = detail::make_canvas(layout.width(), layout.height());
   const detail::CairoContext context(cairo_create(canvas.get()));
   cairo_set_source_rgb(context.get(), 1, 1, 1);
   cairo_paint(context.get());
   if (!title.empty())
-    draw_text(context.get(), title, layout.margin, layout.margin + 0.35 * layout.title_height, layout.width() - 2 * layout.margin,
-              layout.title_size, true);
-  for (std::size_t i = 0; i < tiles.size(); ++i) draw_tile(context.get(), tiles[i], layout, static_cast<int>(i));
+    draw_text(context.get(), title, layout.margin, layout.margin + 0.35 * layout.title_height,
+              layout.width() - 2 * layout.margin, layout.title_size, true);
+  for (std::size_t i = 0; i < tiles.size(); ++i)
+    draw_tile(context.get(), tiles[i], layout, static_cast<int>(i));
   write_file(path, detail::encode_png(canvas.get()));
 }
 

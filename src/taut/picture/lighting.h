@@ -1,5 +1,6 @@
 #pragma once
-// The lights of a picture, and how much of their light eight points give back. Only for the sources of this folder.
+// The lights of a picture, and how much of their light eight points give back. Only for the sources
+// of this folder.
 
 #include "taut/picture/sampling.h"
 #include "taut/picture/shade_point.h"
@@ -15,19 +16,24 @@ struct Lights {
   float offset = 0.0F;  // m: rays start this far off the surface, so that they do not hit it
 };
 
-// The samples of one pixel: where in the pixel, which part of the key light, which direction of the sky.
+// The samples of one pixel: where in the pixel, which part of the key light, which direction of the
+// sky.
 struct PixelPattern {
   PixelPattern(int x, int y, int samples)
-      : place(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), static_cast<std::uint32_t>(samples), 1),
-        key(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), static_cast<std::uint32_t>(samples), 2),
-        sky(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), static_cast<std::uint32_t>(samples), 3) {}
+      : place(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
+              static_cast<std::uint32_t>(samples), 1),
+        key(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
+            static_cast<std::uint32_t>(samples), 2),
+        sky(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
+            static_cast<std::uint32_t>(samples), 3) {}
   PixelSamples place, key, sky;
 };
 
-// Linear colours, rolled off below 1, of the points whose lane is active; lane i takes sample first + i.
-// view: unit vectors from the camera to the points.
-void light_points(const RayScene& scene, const Lights& lights, const PixelPattern& pattern, std::uint32_t first,
-                  const Packet<ShadePoint>& points, const Packet<bool>& active, const Packet<Vec3f>& view, Packet<Vec3f>& colours);
+// Linear colours, rolled off below 1, of the points whose lane is active; lane i takes sample first
+// + i. view: unit vectors from the camera to the points.
+void light_points(const RayScene& scene, const Lights& lights, const PixelPattern& pattern,
+                  std::uint32_t first, const Packet<ShadePoint>& points, const Packet<bool>& active,
+                  const Packet<Vec3f>& view, Packet<Vec3f>& colours);
 
 // Any two unit vectors that make a right-handed frame with the unit vector n.
 void make_frame(const Vec3f& n, Vec3f& x, Vec3f& y);

@@ -23,15 +23,20 @@ namespace {
 
 void check_device(RTCDevice device, const char* what) {
   if (const RTCError error = rtcGetDeviceError(device); error != RTC_ERROR_NONE)
-    throw InputError(fmt::format("ray tracing: {} failed (Embree error {}); is there enough memory?", what, static_cast<int>(error)));
+    throw InputError(
+        fmt::format("ray tracing: {} failed (Embree error {}); is there enough memory?", what,
+                    static_cast<int>(error)));
 }
 
-void attach(RTCDevice device, RTCScene scene, const Surface& surface, unsigned id, const Vec3& origin) {
+void attach(RTCDevice device, RTCScene scene, const Surface& surface, unsigned id,
+            const Vec3& origin) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* vertices = static_cast<float*>(
-      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), surface.positions.size()));
+  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
+                                                               RTC_FORMAT_FLOAT3, 3 * sizeof(float),
+                                                               surface.positions.size()));
   auto* indices = static_cast<unsigned*>(
-      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), surface.triangles.size()));
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                              3 * sizeof(unsigned), surface.triangles.size()));
   if (vertices && indices) {
     for (const Vec3& p : surface.positions)
       for (int k = 0; k < 3; ++k) *vertices++ = static_cast<float>(p[k] - origin[k]);
@@ -67,15 +72,17 @@ void fill(const Rays& rays, Ray8& ray, int* valid) {
 
 }  // namespace
 
-RayScene::RayScene(std::span<const Surface> surfaces, const Vec3& origin) : handles_(std::make_unique<Handles>()) {
+RayScene::RayScene(std::span<const Surface> surfaces, const Vec3& origin)
+    : handles_(std::make_unique<Handles>()) {
   handles_->device = rtcNewDevice(nullptr);
   check_device(handles_->device, "starting");
   handles_->scene = rtcNewScene(handles_->device);
   rtcSetSceneFlags(handles_->scene, RTC_SCENE_FLAG_ROBUST);
   for (std::size_t s = 0; s < surfaces.size(); ++s)
-    if (!surfaces[s].triangles.empty()) attach(handles_->device, handles_->scene, surfaces[s], static_cast<unsigned>(s), origin);
-  // The tree is built by one thread: built by several, the order inside its leaves, and so which of two triangles wins on their common
-  // edge, could differ from run to run.
+    if (!surfaces[s].triangles.empty())
+      attach(handles_->device, handles_->scene, surfaces[s], static_cast<unsigned>(s), origin);
+  // The tree is built by one thread: built by several, the order inside its leaves, and so which of
+  // two triangles wins on their common edge, could differ from run to run.
   tbb::task_arena one_thread(1);
   one_thread.execute([&] { rtcJoinCommitScene(handles_->scene); });
   check_device(handles_->device, "building the tree");
@@ -87,7 +94,8 @@ void RayScene::nearest_hits(const Rays& rays, Hits& hits) const {
   alignas(32) int valid[packet_size];
   RTCRayHit8 query{};
   fill(rays, query.ray, valid);
-  for (int i = 0; i < packet_size; ++i) query.hit.geomID[i] = query.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+  for (int i = 0; i < packet_size; ++i)
+    query.hit.geomID[i] = query.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
@@ -111,7 +119,8 @@ void RayScene::blocked(const Rays& rays, Packet<bool>& result) const {
   rtcInitIntersectContext(&context);
   rtcOccluded8(valid, handles_->scene, &context, &query);
   // Embree marks a blocked ray by tfar = -infinity.
-  for (int i = 0; i < packet_size; ++i) result[static_cast<std::size_t>(i)] = valid[i] && query.tfar[i] < 0.0F;
+  for (int i = 0; i < packet_size; ++i)
+    result[static_cast<std::size_t>(i)] = valid[i] && query.tfar[i] < 0.0F;
 }
 
 }  // namespace taut::detail

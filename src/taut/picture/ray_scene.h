@@ -1,6 +1,7 @@
 #pragma once
-// Rays against triangle meshes, by Embree, in packets of eight. Single precision, coordinates relative to `origin`.
-// Only for the sources of this folder. Queries are const and may be made from several threads.
+// Rays against triangle meshes, by Embree, in packets of eight. Single precision, coordinates
+// relative to `origin`. Only for the sources of this folder. Queries are const and may be made from
+// several threads.
 
 #include <array>
 #include <cstdint>

@@ -31,15 +31,21 @@ void check_options(const RenderOptions& o) {
   constexpr int longest = 16384;
   const auto in = [](double x, double low, double high) { return x >= low && x <= high; };
   if (!in(o.width, 1, longest) || !in(o.height, 1, longest))
-    throw InputError(fmt::format("picture of {} x {} pixels, expected 1 to {} each", o.width, o.height, longest));
-  if (!in(o.samples, 1, 1024)) throw InputError(fmt::format("{} samples a pixel, expected 1 to 1024", o.samples));
-  if (!in(o.light_diameter_deg, 0, 90)) throw InputError(fmt::format("light diameter {} degrees, expected 0 to 90", o.light_diameter_deg));
+    throw InputError(fmt::format("picture of {} x {} pixels, expected 1 to {} each", o.width,
+                                 o.height, longest));
+  if (!in(o.samples, 1, 1024))
+    throw InputError(fmt::format("{} samples a pixel, expected 1 to 1024", o.samples));
+  if (!in(o.light_diameter_deg, 0, 90))
+    throw InputError(
+        fmt::format("light diameter {} degrees, expected 0 to 90", o.light_diameter_deg));
   if (!o.light_direction.allFinite()) throw InputError("light direction is not finite");
   if (o.ground && !std::isfinite(*o.ground)) throw InputError("ground height is not finite");
   if (!(o.ground_line_spacing >= 0.0))
-    throw InputError(fmt::format("ground line spacing {} m, expected at least 0", o.ground_line_spacing));
+    throw InputError(
+        fmt::format("ground line spacing {} m, expected at least 0", o.ground_line_spacing));
   for (const Colour* c : {&o.ground_colour, &o.background_top, &o.background_bottom})
-    if (!in(c->minCoeff(), 0, 1) || !in(c->maxCoeff(), 0, 1)) throw InputError("a background or ground colour is outside 0 to 1");
+    if (!in(c->minCoeff(), 0, 1) || !in(c->maxCoeff(), 0, 1))
+      throw InputError("a background or ground colour is outside 0 to 1");
 }
 
 // Level with the camera's heading: turned to its left, and up.
@@ -65,7 +71,9 @@ struct PixelSum {
     ++count;
   }
   // The samples differ by no more than the colours of an open sky make them.
-  bool settled() const { return ((highest - lowest).array() < 0.1F * highest.array() + 0.005F).all(); }
+  bool settled() const {
+    return ((highest - lowest).array() < 0.1F * highest.array() + 0.005F).all();
+  }
 };
 
 class Renderer {
@@ -78,9 +86,12 @@ class Renderer {
   void set_ground(const Camera& camera, double distance);
   void draw_row(int y, std::uint8_t* rgb) const;
   Vec3f pixel_colour(int x, int y) const;
-  // Adds the pixel's next `count` samples; each ends as background, or as a point of a surface or the ground over it.
-  void add_packet(int x, int y, const detail::PixelPattern& pattern, int count, PixelSum& sum) const;
-  std::optional<detail::ShadePoint> seen_point(const Vec3f& direction, const detail::Hits& hits, std::size_t lane) const;
+  // Adds the pixel's next `count` samples; each ends as background, or as a point of a surface or
+  // the ground over it.
+  void add_packet(int x, int y, const detail::PixelPattern& pattern, int count,
+                  PixelSum& sum) const;
+  std::optional<detail::ShadePoint> seen_point(const Vec3f& direction, const detail::Hits& hits,
+                                               std::size_t lane) const;
   Vec3f ray_direction(float x, float y) const;
   Vec3f background(float y) const;
 
@@ -89,11 +100,13 @@ class Renderer {
   detail::SurfaceLookup lookup_;
   detail::Lights lights_;
   std::optional<detail::Ground> ground_;
-  Vec3f eye_, right_, up_, forward_;  // right_ and up_ reach to the picture's border at unit distance
+  // right_ and up_ reach to the picture's border at unit distance
+  Vec3f eye_, right_, up_, forward_;
   Vec3f top_, bottom_;
 };
 
-Renderer::Renderer(std::span<const Surface> surfaces, const Camera& camera, const RenderOptions& options)
+Renderer::Renderer(std::span<const Surface> surfaces, const Camera& camera,
+                   const RenderOptions& options)
     : options_(options), scene_(surfaces, camera.target), lookup_(surfaces, camera.target) {
   const CameraAxes axes = camera_axes(camera);
   const double distance = (camera.eye - camera.target).norm();
@@ -109,7 +122,8 @@ Renderer::Renderer(std::span<const Surface> surfaces, const Camera& camera, cons
 }
 
 void Renderer::set_lights(const CameraAxes& axes, double distance) {
-  const Vec3 key = options_.light_direction.isZero() ? default_light(axes) : options_.light_direction;
+  const Vec3 key =
+      options_.light_direction.isZero() ? default_light(axes) : options_.light_direction;
   lights_.key = key.stableNormalized().cast<float>();
   detail::make_frame(lights_.key, lights_.key_x, lights_.key_y);
   lights_.key_radius = static_cast<float>(std::tan(0.5 * radians(options_.light_diameter_deg)));
@@ -135,7 +149,8 @@ Image Renderer::draw() const {
   const std::size_t row = 3 * static_cast<std::size_t>(image.width);
   image.rgb.resize(row * static_cast<std::size_t>(image.height));
   parallel_for(image.height, 2, [&](Index begin, Index end) {
-    for (Index y = begin; y < end; ++y) draw_row(y, image.rgb.data() + row * static_cast<std::size_t>(y));
+    for (Index y = begin; y < end; ++y)
+      draw_row(y, image.rgb.data() + row * static_cast<std::size_t>(y));
   });
   return image;
 }
@@ -147,7 +162,8 @@ void Renderer::draw_row(int y, std::uint8_t* rgb) const {
   }
 }
 
-// Most pixels are settled by half of their samples: the others go only where those differ (outlines, soft shadows, creases).
+// Most pixels are settled by half of their samples: the others go only where those differ
+// (outlines, soft shadows, creases).
 Vec3f Renderer::pixel_colour(int x, int y) const {
   const detail::PixelPattern pattern(x, y, options_.samples);
   PixelSum sum;
@@ -168,14 +184,18 @@ Vec3f Renderer::background(float y) const {
   return top_ + s * (bottom_ - top_);
 }
 
-std::optional<detail::ShadePoint> Renderer::seen_point(const Vec3f& direction, const detail::Hits& hits, std::size_t lane) const {
-  const float ground_distance = ground_ ? ground_->distance(eye_, direction) : std::numeric_limits<float>::infinity();
+std::optional<detail::ShadePoint> Renderer::seen_point(const Vec3f& direction,
+                                                       const detail::Hits& hits,
+                                                       std::size_t lane) const {
+  const float ground_distance =
+      ground_ ? ground_->distance(eye_, direction) : std::numeric_limits<float>::infinity();
   if (hits.distance[lane] < ground_distance) return lookup_.at(eye_, direction, hits, lane);
   if (std::isfinite(ground_distance)) return ground_->at(eye_ + ground_distance * direction);
   return std::nullopt;
 }
 
-void Renderer::add_packet(int x, int y, const detail::PixelPattern& pattern, int count, PixelSum& sum) const {
+void Renderer::add_packet(int x, int y, const detail::PixelPattern& pattern, int count,
+                          PixelSum& sum) const {
   const auto lanes = static_cast<std::size_t>(count);
   const auto first = static_cast<std::uint32_t>(sum.count);
   detail::Rays rays;
@@ -198,7 +218,8 @@ void Renderer::add_packet(int x, int y, const detail::PixelPattern& pattern, int
     if (lit[i]) points[i] = *point;
   }
   Packet<Vec3f> colours;
-  if (lit != Packet<bool>{}) detail::light_points(scene_, lights_, pattern, first, points, lit, rays.direction, colours);
+  if (lit != Packet<bool>{})
+    detail::light_points(scene_, lights_, pattern, first, points, lit, rays.direction, colours);
   for (std::size_t i = 0; i < lanes; ++i) {
     const Vec3f behind = background(rows[i]);
     sum.add(lit[i] ? Vec3f(behind + points[i].cover * (colours[i] - behind)) : behind);
@@ -207,7 +228,8 @@ void Renderer::add_packet(int x, int y, const detail::PixelPattern& pattern, int
 
 }  // namespace
 
-Image render(std::span<const Surface> surfaces, const Camera& camera, const RenderOptions& options) {
+Image render(std::span<const Surface> surfaces, const Camera& camera,
+             const RenderOptions& options) {
   check_options(options);
   camera_axes(camera);
   for (const Surface& surface : surfaces) check_surface(surface);

@@ -1,13 +1,17 @@
 #pragma once
-// Random-looking but fixed sample points of a picture: one scrambled Sobol sequence in two dimensions for each use, spread over the pixels.
+// Random-looking but fixed sample points of a picture: one scrambled Sobol sequence in two
+// dimensions for each use, spread over the pixels.
 //
-// Pixels take consecutive runs of the sequence along a Z-order curve whose nested squares are visited in a scrambled order. A pixel's 2^k
-// points form a (0, 2)-net (each dyadic box of area 2^-k holds one), and so do those of 2 x 2, 4 x 4, ... neighbours together: the error
-// left differs from pixel to pixel as much as it can, and the eye averages it away. A sample depends on the pixel's coordinates and its
-// number alone: neither on the order of work nor on the number of threads.
+// Pixels take consecutive runs of the sequence along a Z-order curve whose nested squares are
+// visited in a scrambled order. A pixel's 2^k points form a (0, 2)-net (each dyadic box of area
+// 2^-k holds one), and so do those of 2 x 2, 4 x 4, ... neighbours together: the error left differs
+// from pixel to pixel as much as it can, and the eye averages it away. A sample depends on the
+// pixel's coordinates and its number alone: neither on the order of work nor on the number of
+// threads.
 //
-// Sources: A. Ahmed, P. Wonka, "Screen-Space Blue-Noise Diffusion of Monte Carlo Sampling Error via Hierarchical Ordering of Pixels",
-// ACM TOG 39(6), 2020; scrambling: B. Burley, "Practical Hash-based Owen Scrambling", JCGT 9(4), 2020.
+// Sources: A. Ahmed, P. Wonka, "Screen-Space Blue-Noise Diffusion of Monte Carlo Sampling Error via
+// Hierarchical Ordering of Pixels", ACM TOG 39(6), 2020; scrambling: B. Burley, "Practical
+// Hash-based Owen Scrambling", JCGT 9(4), 2020.
 
 #include <array>
 #include <bit>
@@ -30,7 +34,8 @@ constexpr std::uint32_t reverse_bits(std::uint32_t x) {
   return (x >> 16) | (x << 16);
 }
 
-// Owen's nested uniform scrambling of the number whose bits are x reversed: each bit is flipped by a hash of the bits below it.
+// Owen's nested uniform scrambling of the number whose bits are x reversed: each bit is flipped by
+// a hash of the bits below it.
 constexpr std::uint32_t scramble_reversed(std::uint32_t x, std::uint32_t seed) {
   x += seed;
   x ^= x * 0x6c50b47cU;
@@ -40,9 +45,12 @@ constexpr std::uint32_t scramble_reversed(std::uint32_t x, std::uint32_t seed) {
   return x;
 }
 
-constexpr std::uint32_t scramble(std::uint32_t x, std::uint32_t seed) { return reverse_bits(scramble_reversed(reverse_bits(x), seed)); }
+constexpr std::uint32_t scramble(std::uint32_t x, std::uint32_t seed) {
+  return reverse_bits(scramble_reversed(reverse_bits(x), seed));
+}
 
-// The second Sobol dimension; the first is reverse_bits(index). Both are linear: f(a ^ b) = f(a) ^ f(b).
+// The second Sobol dimension; the first is reverse_bits(index). Both are linear: f(a ^ b) = f(a) ^
+// f(b).
 constexpr std::uint32_t sobol_second(std::uint32_t index) {
   std::uint32_t result = 0;
   for (std::uint32_t direction = 1U << 31; index != 0; index >>= 1, direction ^= direction >> 1)
@@ -64,7 +72,8 @@ constexpr std::uint32_t z_order(std::uint32_t x, std::uint32_t y) {
 // The samples of one pixel for one use (`seed`).
 class PixelSamples {
  public:
-  constexpr PixelSamples(std::uint32_t x, std::uint32_t y, std::uint32_t samples_per_pixel, std::uint32_t seed)
+  constexpr PixelSamples(std::uint32_t x, std::uint32_t y, std::uint32_t samples_per_pixel,
+                         std::uint32_t seed)
       : seed_(mix_bits(seed)),
         first_(scramble(z_order(x, y), seed_) << std::bit_width(samples_per_pixel - 1)),
         second_(sobol_second(first_)) {}

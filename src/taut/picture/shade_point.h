@@ -1,6 +1,7 @@
 #pragma once
-// What a ray has met, ready to be lit: position, normals turned to the viewer, colour with its pattern. Only for the sources of this
-// folder. All vectors are in single precision, positions relative to the same origin as the RayScene.
+// What a ray has met, ready to be lit: position, normals turned to the viewer, colour with its
+// pattern. Only for the sources of this folder. All vectors are in single precision, positions
+// relative to the same origin as the RayScene.
 
 #include <optional>
 #include <vector>
@@ -28,7 +29,8 @@ class SurfaceLookup {
  public:
   SurfaceLookup(std::span<const Surface> surfaces, const Vec3& origin);
   // `ray_direction` has unit length. Nothing for a hit on a triangle without area.
-  std::optional<ShadePoint> at(const Vec3f& ray_origin, const Vec3f& ray_direction, const Hits& hits, std::size_t lane) const;
+  std::optional<ShadePoint> at(const Vec3f& ray_origin, const Vec3f& ray_direction,
+                               const Hits& hits, std::size_t lane) const;
 
  private:
   struct Entry {

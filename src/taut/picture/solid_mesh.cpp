@@ -17,11 +17,13 @@ constexpr double pi = std::numbers::pi;
 void check_lengths(const char* shape, std::initializer_list<double> lengths) {
   for (const double length : lengths)
     if (!(length >= 0.0) || !std::isfinite(length))
-      throw InputError(fmt::format("{}: length {}, expected a finite one of at least 0 m", shape, length));
+      throw InputError(
+          fmt::format("{}: length {}, expected a finite one of at least 0 m", shape, length));
 }
 
 void check_segments(const char* shape, int segments) {
-  if (segments < 3) throw InputError(fmt::format("{}: {} segments, expected at least 3", shape, segments));
+  if (segments < 3)
+    throw InputError(fmt::format("{}: {} segments, expected at least 3", shape, segments));
 }
 
 // Collects vertices in local coordinates and places them in the world.
@@ -37,7 +39,8 @@ class Builder {
   }
   void triangle(Index a, Index b, Index c) { solid_.mesh.triangles.push_back({a, b, c}); }
 
-  // The parallelogram corner, corner + a, corner + a + b, corner + b, seen counter-clockwise along -normal.
+  // The parallelogram corner, corner + a, corner + a + b, corner + b, seen counter-clockwise along
+  // -normal.
   void quad(const Vec3& corner, const Vec3& a, const Vec3& b, const Vec3& normal) {
     const Index i = vertex(corner, normal, Vec2(0, 0));
     vertex(corner + a, normal, Vec2(1, 0));
@@ -65,7 +68,8 @@ class Builder {
     }
   }
 
-  // Two triangles per cell of rows x columns vertices whose first is `first`; columns run counter-clockwise around z, rows upwards.
+  // Two triangles per cell of rows x columns vertices whose first is `first`; columns run
+  // counter-clockwise around z, rows upwards.
   void rows(Index first, int row_count, int column_count) {
     for (int r = 0; r + 1 < row_count; ++r)
       for (int c = 0; c + 1 < column_count; ++c) {
@@ -92,8 +96,10 @@ SolidMesh make_sphere_mesh(double radius, const Isometry& pose, int segments) {
   for (int r = 0; r <= bands; ++r)
     for (int c = 0; c <= segments; ++c) {
       const double latitude = pi * r / bands - 0.5 * pi, longitude = 2.0 * pi * c / segments;
-      const Vec3 n(std::cos(latitude) * std::cos(longitude), std::cos(latitude) * std::sin(longitude), std::sin(latitude));
-      builder.vertex(radius * n, n, Vec2(static_cast<double>(c) / segments, static_cast<double>(r) / bands));
+      const Vec3 n(std::cos(latitude) * std::cos(longitude),
+                   std::cos(latitude) * std::sin(longitude), std::sin(latitude));
+      builder.vertex(radius * n, n,
+                     Vec2(static_cast<double>(c) / segments, static_cast<double>(r) / bands));
     }
   builder.rows(0, bands + 1, segments + 1);
   return builder.take();
@@ -110,7 +116,8 @@ SolidMesh make_disc_mesh(double radius, const Isometry& pose, int segments) {
 SolidMesh make_quad_mesh(double size_x, double size_y, const Isometry& pose) {
   check_lengths("quad", {size_x, size_y});
   Builder builder(pose);
-  builder.quad(Vec3(-0.5 * size_x, -0.5 * size_y, 0), Vec3(size_x, 0, 0), Vec3(0, size_y, 0), Vec3::UnitZ());
+  builder.quad(Vec3(-0.5 * size_x, -0.5 * size_y, 0), Vec3(size_x, 0, 0), Vec3(0, size_y, 0),
+               Vec3::UnitZ());
   return builder.take();
 }
 
@@ -122,7 +129,8 @@ SolidMesh make_cylinder_mesh(double radius, double height, const Isometry& pose,
     for (int c = 0; c <= segments; ++c) {
       const double angle = 2.0 * pi * c / segments;
       const Vec3 n(std::cos(angle), std::sin(angle), 0);
-      builder.vertex(radius * n + Vec3(0, 0, (r - 0.5) * height), n, Vec2(static_cast<double>(c) / segments, r));
+      builder.vertex(radius * n + Vec3(0, 0, (r - 0.5) * height), n,
+                     Vec2(static_cast<double>(c) / segments, r));
     }
   builder.rows(0, 2, segments + 1);
   builder.disc(radius, 0.5 * height, 1.0, segments);

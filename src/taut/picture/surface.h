@@ -1,5 +1,6 @@
 #pragma once
-// One thing to be drawn: a triangle mesh with two colours. Views only; the arrays must live as long as the call that draws them.
+// One thing to be drawn: a triangle mesh with two colours. Views only; the arrays must live as long
+// as the call that draws them.
 //
 //   positions   m, one per vertex, Z up
 //   triangles   three vertex indices each, from 0; the front is where they run counter-clockwise
@@ -34,9 +35,11 @@ struct Surface {
   Colour back = Colour(0.93, 0.64, 0.27);
   Pattern pattern = Pattern::none;
   Vec2 pattern_cells = Vec2(10, 10);  // cells per unit of u and v
-  bool smooth_normals = true;         // without `normals`: area-weighted vertex normals; false draws facets
-  double translucency = 0.15;         // share of the light that falls through to the other side, in [0, 1]; 0 for solids
-  double gloss = 0.0;                 // strength of a soft highlight, in [0, 1]
+  // without `normals`: area-weighted vertex normals; false draws facets
+  bool smooth_normals = true;
+  // share of the light that falls through to the other side, in [0, 1]; 0 for solids
+  double translucency = 0.15;
+  double gloss = 0.0;  // strength of a soft highlight, in [0, 1]
 };
 
 // A surface for a mesh in the default cloth colours.
@@ -48,8 +51,9 @@ inline Surface surface_of(const TriangleMesh& mesh) {
   return surface;
 }
 
-// Throws InputError naming the surface and the vertex or triangle: a position or (u, v) that is not finite, an index out of range, arrays
-// of different lengths, a pattern without (u, v), a colour, translucency or gloss out of range. An empty surface is fine and draws nothing.
+// Throws InputError naming the surface and the vertex or triangle: a position or (u, v) that is not
+// finite, an index out of range, arrays of different lengths, a pattern without (u, v), a colour,
+// translucency or gloss out of range. An empty surface is fine and draws nothing.
 void check_surface(const Surface& surface);
 
 }  // namespace taut

@@ -12,9 +12,11 @@ namespace {
 
 bool is_svg(const std::filesystem::path& path) {
   std::string ending = path.extension().string();
-  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::ranges::transform(ending, ending.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (ending != ".svg" && ending != ".png")
-    throw InputError({path.string()}, "ends in '" + ending + "'; a figure's file ends in .svg or .png");
+    throw InputError({path.string()},
+                     "ends in '" + ending + "'; a figure's file ends in .svg or .png");
   return ending == ".svg";
 }
 

@@ -27,7 +27,9 @@ class TemporaryFolder {
     if (failure) parent = "/tmp";
     std::string name = (parent / "taut-plot-XXXXXX").string();
     if (!::mkdtemp(name.data()))
-      throw InputError({parent.string()}, std::string("no folder can be made there for a plot's data: ") + std::strerror(errno));
+      throw InputError(
+          {parent.string()},
+          std::string("no folder can be made there for a plot's data: ") + std::strerror(errno));
     path_ = name;
   }
   ~TemporaryFolder() {
@@ -42,9 +44,12 @@ class TemporaryFolder {
   fs::path path_;
 };
 
-constexpr const char* how_to_get = "plots are drawn by gnuplot, which is not installed; on Debian or Ubuntu: apt-get install gnuplot-nox";
+constexpr const char* how_to_get =
+    "plots are drawn by gnuplot, which is not installed; on Debian or Ubuntu: apt-get install "
+    "gnuplot-nox";
 
-// Exit code of gnuplot in that folder, its messages in the folder's file "said"; -1 when it was ended by a signal.
+// Exit code of gnuplot in that folder, its messages in the folder's file "said"; -1 when it was
+// ended by a signal.
 int spawn_gnuplot(const fs::path& folder) {
   const std::string said = (folder / "said").string();
   posix_spawn_file_actions_t actions;
@@ -56,17 +61,21 @@ int spawn_gnuplot(const fs::path& folder) {
   // --default-settings: the user's own gnuplot settings would make other figures of the same data.
   const char* arguments[] = {"gnuplot", "--default-settings", "script.gp", nullptr};
   pid_t child = -1;
-  const int failure = ::posix_spawnp(&child, "gnuplot", &actions, nullptr, const_cast<char**>(arguments), environ);
+  const int failure =
+      ::posix_spawnp(&child, "gnuplot", &actions, nullptr, const_cast<char**>(arguments), environ);
   posix_spawn_file_actions_destroy(&actions);
   if (failure == ENOENT) throw InputError(how_to_get);
-  if (failure != 0) throw InputError(std::string("gnuplot cannot be started: ") + std::strerror(failure));
+  if (failure != 0)
+    throw InputError(std::string("gnuplot cannot be started: ") + std::strerror(failure));
   int state = 0;
   while (::waitpid(child, &state, 0) < 0 && errno == EINTR) {
   }
   return WIFEXITED(state) ? WEXITSTATUS(state) : -1;
 }
 
-std::string end_of(const std::string& text) { return text.size() <= 600 ? text : "..." + text.substr(text.size() - 600); }
+std::string end_of(const std::string& text) {
+  return text.size() <= 600 ? text : "..." + text.substr(text.size() - 600);
+}
 
 }  // namespace
 
@@ -79,7 +88,8 @@ std::string run_gnuplot(const GnuplotJob& job) {
   std::string drawn;
   if (fs::exists(folder.path() / job.output)) drawn = read_file(folder.path() / job.output);
   if (code != 0 || drawn.empty())
-    throw InputError("gnuplot failed (exit code " + std::to_string(code) + ") and said: " + end_of(read_file(folder.path() / "said")));
+    throw InputError("gnuplot failed (exit code " + std::to_string(code) +
+                     ") and said: " + end_of(read_file(folder.path() / "said")));
   return drawn;
 }
 

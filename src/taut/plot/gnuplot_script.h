@@ -1,6 +1,7 @@
 #pragma once
-// A figure in gnuplot's language. Text from outside stands in single quotes only, where gnuplot neither substitutes nor escapes anything
-// but a doubled quote, and the terminals are told to take it without markup.
+// A figure in gnuplot's language. Text from outside stands in single quotes only, where gnuplot
+// neither substitutes nor escapes anything but a doubled quote, and the terminals are told to take
+// it without markup.
 
 #include "taut/plot/figure.h"
 
@@ -11,7 +12,8 @@ struct PlotFile {
 };
 
 struct GnuplotJob {
-  std::string script;  // reads the files and writes `output`, all in the folder where gnuplot is started
+  // reads the files and writes `output`, all in the folder where gnuplot is started
+  std::string script;
   std::vector<PlotFile> files;
   std::string output;
 };

@@ -17,7 +17,8 @@ struct PlotLayout {
 };
 
 PlotLayout lay_out(const Figure& figure);
-// What a shared legend lists: the first curve of each name; and how many of them stand beside each row of panels.
+// What a shared legend lists: the first curve of each name; and how many of them stand beside each
+// row of panels.
 std::vector<const Curve*> shared_legend(const Figure& figure);
 std::size_t shared_legend_rows(const Figure& figure);
 

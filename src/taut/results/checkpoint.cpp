@@ -32,7 +32,8 @@ class Writer {
   template <class Container>
   void list(const Container& items) {
     value(static_cast<std::uint64_t>(items.size()));
-    bytes_.append(reinterpret_cast<const char*>(items.data()), items.size() * sizeof(typename Container::value_type));
+    bytes_.append(reinterpret_cast<const char*>(items.data()),
+                  items.size() * sizeof(typename Container::value_type));
   }
   const std::string& bytes() const { return bytes_; }
 
@@ -62,7 +63,8 @@ class Reader {
   }
   bool at_end() const { return bytes_.empty(); }
   [[noreturn]] void fail() const {
-    throw InputError({name_}, "is damaged or of another version of Taut; run the scene anew with `taut run`");
+    throw InputError(
+        {name_}, "is damaged or of another version of Taut; run the scene anew with `taut run`");
   }
 
  private:
@@ -110,7 +112,8 @@ void write(std::ostream& out, const Checkpoint& checkpoint) {
 
 Checkpoint parse_checkpoint(const std::string& bytes, const std::string& name) {
   const std::size_t frame_size = sizeof(magic) + sizeof(std::uint64_t);
-  if (bytes.size() < frame_size || std::memcmp(bytes.data(), magic, sizeof(magic)) != 0) Reader({}, name).fail();
+  if (bytes.size() < frame_size || std::memcmp(bytes.data(), magic, sizeof(magic)) != 0)
+    Reader({}, name).fail();
   const std::string_view content(bytes.data(), bytes.size() - sizeof(std::uint64_t));
   std::uint64_t sum = 0;
   std::memcpy(&sum, bytes.data() + content.size(), sizeof(sum));

@@ -7,13 +7,14 @@ namespace taut {
 void draw_contact_sheet(const Simulation& simulation, const ResultsFolder& results) {
   constexpr int most_tiles = 6;
   const int count = results.frame_count();
-  if (count == 0) throw InputError({results.folder().string()}, "holds no frames; run a scene into it first");
+  if (count == 0)
+    throw InputError({results.folder().string()}, "holds no frames; run a scene into it first");
   PictureOptions options;
   options.width = 480;
   options.height = 400;
   options.samples = 8;  // every run ends with it: a second, not two
-  draw_contact_sheet(results.contact_sheet_file(), simulation.scene(), simulation.cloth(), results, spread_frames(count - 1, most_tiles),
-                     options);
+  draw_contact_sheet(results.contact_sheet_file(), simulation.scene(), simulation.cloth(), results,
+                     spread_frames(count - 1, most_tiles), options);
 }
 
 }  // namespace taut

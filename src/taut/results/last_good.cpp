@@ -24,15 +24,18 @@ std::filesystem::path save_last_good(const Simulation& simulation, const Results
   if (!contact || contact->contact().trouble().empty()) return folder;
   std::vector<Vec3> in_view;
   for (const Index node : contact->contact().trouble())
-    for (const double side : {-around, around}) in_view.push_back(all.positions[node] + Vec3::Constant(side));
+    for (const double side : {-around, around})
+      in_view.push_back(all.positions[node] + Vec3::Constant(side));
   FramingOptions framing;
   framing.aspect = double(width) / height;
   RenderOptions options;
   options.width = width, options.height = height;
   const SolidShapes solids(simulation.scene());
-  const Tile tile{draw_scene(simulation.cloth(), state.x, solids, state.time, frame_camera(in_view, framing), options),
+  const Tile tile{draw_scene(simulation.cloth(), state.x, solids, state.time,
+                             frame_camera(in_view, framing), options),
                   fmt::format("t = {:.4f} s", state.time)};
-  write_contact_sheet(folder / "place.png", std::span(&tile, 1), "Where cloth could not be kept apart");
+  write_contact_sheet(folder / "place.png", std::span(&tile, 1),
+                      "Where cloth could not be kept apart");
   return folder;
 }
 

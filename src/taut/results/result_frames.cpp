@@ -15,7 +15,8 @@ namespace {
 
 Scene scene_of(const ResultsFolder& results) {
   if (!std::filesystem::exists(results.scene_file()))
-    throw InputError({results.folder().string()}, "holds no scene.toml: it is no result of `taut run`");
+    throw InputError({results.folder().string()},
+                     "holds no scene.toml: it is no result of `taut run`");
   return read_scene(results.scene_file());
 }
 
@@ -63,7 +64,8 @@ std::vector<double> nearness(std::span<const Solid> solids, double time, std::sp
 
 }  // namespace
 
-ResultFrames::ResultFrames(const std::filesystem::path& folder) : results_(folder), scene_(scene_of(results_)), cloth_(scene_) {}
+ResultFrames::ResultFrames(const std::filesystem::path& folder)
+    : results_(folder), scene_(scene_of(results_)), cloth_(scene_) {}
 
 int ResultFrames::last_frame() const {
   const int count = results_.frame_count();
@@ -73,14 +75,16 @@ int ResultFrames::last_frame() const {
 
 bool ResultFrames::run_has_finished() const {
   if (!std::filesystem::exists(results_.summary_file())) return false;
-  const nlohmann::json summary = nlohmann::json::parse(read_file(results_.summary_file()), nullptr, false);
+  const nlohmann::json summary =
+      nlohmann::json::parse(read_file(results_.summary_file()), nullptr, false);
   return summary.is_object() && summary.value("status", std::string()) == "finished";
 }
 
 std::vector<Vec3> ResultFrames::positions(int frame) const {
   std::vector<Vec3> x = results_.read_frame(frame);
   if (static_cast<Index>(x.size()) != cloth_.nodes())
-    throw InputError({results_.frame_file(frame).string()}, fmt::format("has {} nodes, the scene has {}", x.size(), cloth_.nodes()));
+    throw InputError({results_.frame_file(frame).string()},
+                     fmt::format("has {} nodes, the scene has {}", x.size(), cloth_.nodes()));
   return x;
 }
 
@@ -88,7 +92,8 @@ std::vector<double> ResultFrames::contact(int frame, std::span<const Vec3> x) co
   const std::optional<std::vector<std::uint8_t>> recorded = results_.read_contact(frame);
   if (!recorded) return nearness(scene_.solids, time_of(frame), x);
   if (recorded->size() != x.size())
-    throw InputError({results_.contact_file(frame).string()}, fmt::format("has {} nodes, the scene has {}", recorded->size(), x.size()));
+    throw InputError({results_.contact_file(frame).string()},
+                     fmt::format("has {} nodes, the scene has {}", recorded->size(), x.size()));
   return {recorded->begin(), recorded->end()};
 }
 
@@ -97,7 +102,8 @@ NodeFields ResultFrames::fields(int frame, std::span<const Vec3> x) const {
   fields.velocity = cloth_.start().v;
   if (frame > 0) {
     const std::vector<Vec3> before = positions(frame - 1);
-    for (std::size_t i = 0; i < before.size(); ++i) fields.velocity[i] = (x[i] - before[i]) / interval();
+    for (std::size_t i = 0; i < before.size(); ++i)
+      fields.velocity[i] = (x[i] - before[i]) / interval();
   }
   fields.stretch = node_stretch(cloth_, x);
   fields.contact = contact(frame, x);

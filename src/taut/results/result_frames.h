@@ -1,12 +1,15 @@
 #pragma once
-// The frames of a results folder, finished or still growing, with the scene they belong to: what export and pictures read.
+// The frames of a results folder, finished or still growing, with the scene they belong to: what
+// export and pictures read.
 //
 //   time of a frame    frame * h * steps_per_frame, s
-//   velocity           (x_k - x_{k-1}) / (time between frames), m/s: the mean since the frame before, which with one step a frame is the
-//                      integrator's velocity; frame 0: the scene's initial velocity
+//   velocity           (x_k - x_{k-1}) / (time between frames), m/s: the mean since the frame
+//                      before, which with one step a frame is the integrator's velocity; frame 0:
+//                      the scene's initial velocity
 //   stretch            of a node: the largest L/L0 - 1 of its stretch springs; 0 where it has none
-//   contact            the bits that the run has recorded (sim/node_contact.h) as a number. Of a folder without them: 1 for nodes whose
-//                      distance from an analytic solid (outside its thickness) is below 0.1 mm + 2e-4 of its size, else 0
+//   contact            the bits that the run has recorded (sim/node_contact.h) as a number. Of a
+//                      folder without them: 1 for nodes whose distance from an analytic solid
+//                      (outside its thickness) is below 0.1 mm + 2e-4 of its size, else 0
 
 #include "taut/results/results.h"
 
@@ -32,7 +35,8 @@ class ResultFrames {
   int last_frame() const;
   // False while the run goes on, or was interrupted or failed.
   bool run_has_finished() const;
-  // Throws InputError when the frame is missing, damaged or has another number of nodes than the scene.
+  // Throws InputError when the frame is missing, damaged or has another number of nodes than the
+  // scene.
   std::vector<Vec3> positions(int frame) const;
   // `x`: the frame's positions.
   NodeFields fields(int frame, std::span<const Vec3> x) const;

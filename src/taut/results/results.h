@@ -4,19 +4,24 @@
 //   scene.toml          what ran, all defaults filled in
 //   frames/NNNNNN.npy   node positions, float32 (nodes, 3), m; 000000 is the start
 //   frames/contact_NNNNNN.npy what touches each node, uint8 (nodes) (sim/node_contact.h)
-//   frames/triangles.npy int32 (triangles, 3), frames/uv.npy float32 (nodes, 2), frames/cloths.json: which nodes belong to which cloth
-//   frames/solid_K_triangles.npy int32 (triangles, 3), frames/solid_K_points.npy float32 (samples x vertices, 3), m: solids that are meshes,
+//   frames/triangles.npy int32 (triangles, 3), frames/uv.npy float32 (nodes, 2),
+//   frames/cloths.json: which nodes belong to which cloth frames/solid_K_triangles.npy int32
+//   (triangles, 3), frames/solid_K_points.npy float32 (samples x vertices, 3), m: solids that are
+//   meshes,
 //       K counted from 0; one sample a frame, or a single one if the solid never moves
-//   frames/stretch_springs.npy int32 (springs, 2), the nodes at the ends; frames/rest_lengths.npy float32 (springs), m: the stretch is L/L0 - 1
+//   frames/stretch_springs.npy int32 (springs, 2), the nodes at the ends; frames/rest_lengths.npy
+//   float32 (springs), m: the stretch is L/L0 - 1
 //   stats.csv           one row a step
 //   summary.json        how the run ended, with totals, machine and instruction set
 //   checkpoint/state.bin everything needed to go on, to the same bits
 //   contact_sheet.png   some frames in one picture
-//   last_good/          of a run that failed: the state before, and a picture of the place (results/run.h)
+//   last_good/          of a run that failed: the state before, and a picture of the place
+//                       (results/run.h)
 //   stats.svg           stats.csv as curves, where `taut plot` was asked for it
 //
-// Every file is written whole or not at all; stats.csv grows by whole rows. While a run lasts, stats.csv is marked as being written
-// (base/file_lock.h): that tells a run that goes on from one that was killed.
+// Every file is written whole or not at all; stats.csv grows by whole rows. While a run lasts,
+// stats.csv is marked as being written (base/file_lock.h): that tells a run that goes on from one
+// that was killed.
 
 #include <cstdio>
 #include <filesystem>
@@ -46,8 +51,9 @@ class ResultsFolder {
   std::filesystem::path checkpoint_file() const { return folder_ / "checkpoint" / "state.bin"; }
   std::filesystem::path contact_sheet_file() const { return folder_ / "contact_sheet.png"; }
 
-  // Makes the folder for a new run: results of an earlier run in it are removed. Throws InputError when the folder holds something that is
-  // not a result of Taut's, or when a run is writing it. Returns what was there where that was another scene's: in sentences, for the user.
+  // Makes the folder for a new run: results of an earlier run in it are removed. Throws InputError
+  // when the folder holds something that is not a result of Taut's, or when a run is writing it.
+  // Returns what was there where that was another scene's: in sentences, for the user.
   std::vector<std::string> start(const Simulation& simulation) const;
   // Before the run goes on for another number of frames than it began with.
   void change_length(const Simulation& simulation) const;
@@ -56,19 +62,22 @@ class ResultsFolder {
   // Throws InputError while another run writes this folder.
   void refuse_running() const;
   // `contact`: as node_contact; it is there as soon as the frame is. Without it there is none.
-  void write_frame(int frame, std::span<const Vec3> x, std::span<const std::uint8_t> contact = {}) const;
+  void write_frame(int frame, std::span<const Vec3> x,
+                   std::span<const std::uint8_t> contact = {}) const;
   std::vector<Vec3> read_frame(int frame) const;
   // Nothing where the folder was written before there were such files.
   std::optional<std::vector<std::uint8_t>> read_contact(int frame) const;
   // How many frames there are, counted from 0 without a gap.
   int frame_count() const;
-  // Is there a frame after the first that is missing? Such a folder was tampered with, or its disk is failing.
+  // Is there a frame after the first that is missing? Such a folder was tampered with, or its disk
+  // is failing.
   bool has_gap() const;
   void remove_frames_after(int frame) const;
 
   void write_checkpoint(const Simulation& simulation, int frame) const;
-  // Restores the simulation. Throws InputError when the checkpoint is missing, damaged or of another scene, of which the number of frames
-  // alone may differ, or when a mesh or motion file has changed since.
+  // Restores the simulation. Throws InputError when the checkpoint is missing, damaged or of
+  // another scene, of which the number of frames alone may differ, or when a mesh or motion file
+  // has changed since.
   CheckpointPlace read_checkpoint(Simulation& simulation) const;
 
  private:
@@ -78,7 +87,8 @@ class ResultsFolder {
 // stats.csv, a row a step, flushed row by row.
 class StatsWriter {
  public:
-  // Starts the file, or keeps the rows up to `keep_steps` of the one that is there (after a resume).
+  // Starts the file, or keeps the rows up to `keep_steps` of the one that is there (after a
+  // resume).
   StatsWriter(const std::filesystem::path& path, int keep_steps);
   ~StatsWriter();
   StatsWriter(const StatsWriter&) = delete;

@@ -51,7 +51,8 @@ void note_stretch(RunSummary& summary, const StepRecord& r, const Simulation& si
     AcceptedOvershoots& o = summary.overshoots;
     ++o.steps;
     o.largest = std::max(o.largest, r.overshoot);
-    if (std::max(r.overshoot, r.max_stretch) > AcceptedOvershoots::torn && o.torn_steps++ == 0) o.first_torn = r.step;
+    if (std::max(r.overshoot, r.max_stretch) > AcceptedOvershoots::torn && o.torn_steps++ == 0)
+      o.first_torn = r.step;
   }
   // NaN too: it is not below.
   if (r.max_stretch <= summary.max_stretch) return;
@@ -62,22 +63,27 @@ void note_stretch(RunSummary& summary, const StepRecord& r, const Simulation& si
 }
 
 std::string worst_place(const RunSummary& s) {
-  return fmt::format("{:.4g} % between nodes {} and {} of cloth '{}' in step {} (t = {:.4g} s)", 100.0 * s.worst_stretch.stretch,
-                     s.worst_stretch.i, s.worst_stretch.j, s.worst_stretch.cloth, s.worst_step, s.worst_time);
+  return fmt::format("{:.4g} % between nodes {} and {} of cloth '{}' in step {} (t = {:.4g} s)",
+                     100.0 * s.worst_stretch.stretch, s.worst_stretch.i, s.worst_stretch.j,
+                     s.worst_stretch.cloth, s.worst_step, s.worst_time);
 }
 
 void warn(RunSummary& s, const TimeOptions& time) {
   constexpr double twice_its_length = 1.0;
   if (s.overshoots.torn_steps > 0)
-    s.warnings.push_back(fmt::format(
-        "the result is not to be trusted from step {} on: in {} of {} steps springs ended up to {:.3g} % of their length beyond what the "
-        "step foresaw, although steps were halved {} times. Worst stretch: {}. Make pins and solids that pull there slower, or time.step "
-        "smaller, or allow more halvings (time.max_halvings)",
-        s.overshoots.first_torn, s.overshoots.torn_steps, s.steps, 100.0 * s.overshoots.largest, time.max_halvings, worst_place(s)));
+    s.warnings.push_back(
+        fmt::format("the result is not to be trusted from step {} on: in {} of {} steps springs "
+                    "ended up to {:.3g} % of their length beyond what the "
+                    "step foresaw, although steps were halved {} times. Worst stretch: {}. Make "
+                    "pins and solids that pull there slower, or time.step "
+                    "smaller, or allow more halvings (time.max_halvings)",
+                    s.overshoots.first_torn, s.overshoots.torn_steps, s.steps,
+                    100.0 * s.overshoots.largest, time.max_halvings, worst_place(s)));
   // Integrators that foresee nothing, and steps that may not be halved, end here.
   else if (s.max_stretch > twice_its_length)
     s.warnings.push_back(
-        fmt::format("springs were stretched to more than twice their length, as no fabric is: {}. Unless that is meant, make pins and "
+        fmt::format("springs were stretched to more than twice their length, as no fabric is: {}. "
+                    "Unless that is meant, make pins and "
                     "solids that pull there slower, raise k_stretch, or make time.step smaller",
                     worst_place(s)));
 }
@@ -86,22 +92,25 @@ void warn(RunSummary& s, const TimeOptions& time) {
 std::string advice(const Status& status, const Simulation& simulation) {
   const SurfaceContact* contact = simulation.surface_contact();
   if (contact && !contact->contact().trouble().empty())
-    return "leave the cloth there more room, let the pins and solids that hold it move slower or alike (their key frames), or make "
+    return "leave the cloth there more room, let the pins and solids that hold it move slower or "
+           "alike (their key frames), or make "
            "time.step or "
            "contact.thickness smaller; last_good/ shows the place";
   if (status.outcome == Outcome::not_finite)
-    return "numbers have grown without bound: make time.step smaller, and look for key frames that jump and for stiffnesses or masses far "
+    return "numbers have grown without bound: make time.step smaller, and look for key frames that "
+           "jump and for stiffnesses or masses far "
            "from those of "
            "cloth (`taut check`)";
   if (status.outcome == Outcome::max_iterations && simulation.stepper().integrator().is_nonlinear())
-    return "make time.step smaller, allow more with time.newton_max_iterations, or ask for less with time.newton_tolerance";
+    return "make time.step smaller, allow more with time.newton_max_iterations, or ask for less "
+           "with time.newton_tolerance";
   return "make time.step smaller, or take another solver.name";
 }
 
 void finish_means(RunSummary& summary) {
   if (summary.steps == 0) return;
-  for (double* mean :
-       {&summary.mean_step_ms, &summary.mean_iterations, &summary.mean_assemble_ms, &summary.mean_solver_ms, &summary.mean_contact_ms})
+  for (double* mean : {&summary.mean_step_ms, &summary.mean_iterations, &summary.mean_assemble_ms,
+                       &summary.mean_solver_ms, &summary.mean_contact_ms})
     *mean /= summary.steps;
 }
 
@@ -109,7 +118,8 @@ const UntangleReport* untangling(const Simulation& simulation) {
   return simulation.surface_contact() ? simulation.surface_contact()->untangled() : nullptr;
 }
 
-void write_summary(const RunSummary& s, const Simulation& simulation, const ResultsFolder& results) {
+void write_summary(const RunSummary& s, const Simulation& simulation,
+                   const ResultsFolder& results) {
   const Scene& scene = simulation.scene();
   nlohmann::ordered_json json{{"title", scene.title},
                               {"status", name_of(s.end)},
@@ -157,8 +167,8 @@ void write_summary(const RunSummary& s, const Simulation& simulation, const Resu
 
 }  // namespace
 
-RunSummary run(Simulation& simulation, const ResultsFolder& results, RunObserver& observer, const std::atomic<bool>& interrupt,
-               int first_frame) {
+RunSummary run(Simulation& simulation, const ResultsFolder& results, RunObserver& observer,
+               const std::atomic<bool>& interrupt, int first_frame) {
   Timer timer;
   const TimeOptions& time = simulation.scene().time;
   const int steps_total = time.frames * time.steps_per_frame;
@@ -170,7 +180,8 @@ RunSummary run(Simulation& simulation, const ResultsFolder& results, RunObserver
   std::filesystem::remove(results.summary_file());
   results.remove_frames_after(first_frame);
   if (first_frame == 0) results.write_frame(0, simulation.state().x, node_contact(simulation));
-  if (const UntangleReport* untangled = untangling(simulation); untangled && first_frame == 0) observer.on_message(describe(*untangled));
+  if (const UntangleReport* untangled = untangling(simulation); untangled && first_frame == 0)
+    observer.on_message(describe(*untangled));
   StatsWriter stats(results.stats_file(), simulation.steps_done());
   int frame = first_frame;
   while (simulation.steps_done() < steps_total) {
@@ -187,8 +198,10 @@ RunSummary run(Simulation& simulation, const ResultsFolder& results, RunObserver
       break;
     }
     if (record.fallbacks > 0)
-      observer.on_message(fmt::format("step {}: {} had to begin again, in double precision or with another method; {} solved it", record.step,
-                                      simulation.scene().solver.name, record.solver));
+      observer.on_message(
+          fmt::format("step {}: {} had to begin again, in double precision or with another method; "
+                      "{} solved it",
+                      record.step, simulation.scene().solver.name, record.solver));
     const bool ends_frame = simulation.steps_done() % time.steps_per_frame == 0;
     stats.write(record, simulation.steps_done() / time.steps_per_frame);
     add_step(summary, record);

@@ -1,6 +1,7 @@
 #pragma once
-// Frames of a results folder as files of other programs (io/sequence_writer.h): one object a cloth and solid, in this order; vertex order
-// and texture coordinates kept. Cloths have the fields velocity, stretch and contact (results/result_frames.h).
+// Frames of a results folder as files of other programs (io/sequence_writer.h): one object a cloth
+// and solid, in this order; vertex order and texture coordinates kept. Cloths have the fields
+// velocity, stretch and contact (results/result_frames.h).
 //
 //   scale   file coordinates = scale * metres
 //   up      z: as Taut; y: (x, y, z) becomes (x, z, -y)
@@ -25,14 +26,16 @@ struct SequenceExportOptions {
 
 class SequenceExport {
  public:
-  // `frames` must outlive the export. Throws InputError for bad options, or as make_sequence_writer.
+  // `frames` must outlive the export. Throws InputError for bad options, or as
+  // make_sequence_writer.
   SequenceExport(const ResultFrames& frames, const SequenceExportOptions& options);
 
-  // Adds the chosen frames up to this one that have not been added; they must be in the results folder.
+  // Adds the chosen frames up to this one that have not been added; they must be in the results
+  // folder.
   void add_frames_until(int frame);
   int frames_added() const { return writer_->frames_added(); }
-  // Meshes in the folder that an earlier export of the same objects has left, of frames that this one has not added: other programs would
-  // take them for part of the sequence.
+  // Meshes in the folder that an earlier export of the same objects has left, of frames that this
+  // one has not added: other programs would take them for part of the sequence.
   std::vector<std::filesystem::path> files_of_other_frames() const;
   // Ends what has at least one frame. Without it, what was begun is taken back.
   void finish();

@@ -34,10 +34,13 @@ SolidMesh mesh_of(const MeshSolid& solid, double time) {
 
 SolidShapes::SolidShapes(const Scene& scene, int segments) : scene_(scene), segments_(segments) {
   for (std::size_t k = 0; k < scene.solids.size(); ++k)
-    if (scene.solids[k].shape == SolidShape::mesh) meshes_.emplace(k, MeshSolid(scene.solids[k], scene.folder));
+    if (scene.solids[k].shape == SolidShape::mesh)
+      meshes_.emplace(k, MeshSolid(scene.solids[k], scene.folder));
 }
 
-std::string SolidShapes::name(std::size_t k) const { return solid(k).name.empty() ? "solid_" + std::to_string(k) : solid(k).name; }
+std::string SolidShapes::name(std::size_t k) const {
+  return solid(k).name.empty() ? "solid_" + std::to_string(k) : solid(k).name;
+}
 
 bool SolidShapes::moves(std::size_t k) const {
   const Solid& s = solid(k);

@@ -4,15 +4,16 @@
 #include <map>
 
 #include "taut/picture/solid_mesh.h"
-#include "taut/sim/mesh_solid.h"
 #include "taut/scene/scene.h"
+#include "taut/sim/mesh_solid.h"
 
 namespace taut {
 
 class SolidShapes {
  public:
-  // `segments`: corners around a circle. A plane, which has no end, becomes a disc of 3 m radius about its own origin.
-  // Reads the files of solids that are meshes; throws InputError as MeshSolid.
+  // `segments`: corners around a circle. A plane, which has no end, becomes a disc of 3 m radius
+  // about its own origin. Reads the files of solids that are meshes; throws InputError as
+  // MeshSolid.
   explicit SolidShapes(const Scene& scene, int segments = 96);
 
   std::size_t size() const { return scene_.solids.size(); }

@@ -7,9 +7,9 @@
 
 #include "taut/base/error.h"
 #include "taut/base/file.h"
+#include "taut/core/core_bound.h"
 #include "taut/io/matrix_market.h"
 #include "taut/results/stored_constraints.h"
-#include "taut/core/core_bound.h"
 
 namespace taut {
 
@@ -17,21 +17,27 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Blocks of 3x3 from a scalar matrix: where three rows and columns of a node pair hold any entry, there is a block.
+// Blocks of 3x3 from a scalar matrix: where three rows and columns of a node pair hold any entry,
+// there is a block.
 BlockCsr in_blocks_of_three(const BlockCsr& scalar, const fs::path& file) {
   if (scalar.rows() % 3 != 0)
-    throw InputError({file.string()},
-                     fmt::format("has {} rows, which is no multiple of 3: constraints belong to nodes of three unknowns", scalar.rows()));
+    throw InputError(
+        {file.string()},
+        fmt::format(
+            "has {} rows, which is no multiple of 3: constraints belong to nodes of three unknowns",
+            scalar.rows()));
   const BlockPattern& p = *scalar.pattern;
   const Index nodes = scalar.rows() / 3;
   std::vector<std::vector<Index>> columns(static_cast<std::size_t>(nodes));
   for (Index i = 0; i < p.rows(); ++i)
-    for (Index k = p.row_start[i]; k < p.row_start[i + 1]; ++k) columns[i / 3].push_back(p.column[k] / 3);
+    for (Index k = p.row_start[i]; k < p.row_start[i + 1]; ++k)
+      columns[i / 3].push_back(p.column[k] / 3);
   BlockCsr a(make_pattern(std::move(columns), 3));
   for (Index i = 0; i < p.rows(); ++i)
     for (Index k = p.row_start[i]; k < p.row_start[i + 1]; ++k) {
       const Index node = i / 3, j = p.column[k];
-      a.block(node, a.pattern->find(node, j / 3))[(i % 3) * a.pattern->width(node) + j % 3] = scalar.values[static_cast<std::size_t>(k)];
+      a.block(node, a.pattern->find(node, j / 3))[(i % 3) * a.pattern->width(node) + j % 3] =
+          scalar.values[static_cast<std::size_t>(k)];
     }
   return a;
 }
@@ -41,7 +47,8 @@ double stiffness_in(const fs::path& meta) {
   const nlohmann::json json = nlohmann::json::parse(read_file(meta), nullptr, false);
   if (!json.is_object())
     throw InputError({meta.string()},
-                     "is no JSON object: it is damaged, or not of `taut dump`; dump the system anew, or name the files (--matrix, --rhs, "
+                     "is no JSON object: it is damaged, or not of `taut dump`; dump the system "
+                     "anew, or name the files (--matrix, --rhs, "
                      "--constraints, --core)");
   const auto it = json.find("stiffness");
   return it != json.end() && it->is_number() ? it->get<double>() : -1.0;
@@ -51,19 +58,31 @@ double stiffness_in(const fs::path& meta) {
 
 SystemFiles files_of_dump(const fs::path& folder) {
   if (!fs::is_directory(folder))
-    throw InputError({folder.string()}, "is no folder; give one that `taut dump` has written, or --matrix A.mtx");
+    throw InputError({folder.string()},
+                     "is no folder; give one that `taut dump` has written, or --matrix A.mtx");
   if (!fs::exists(folder / "meta.json"))
     throw InputError({folder.string()},
-                     "has no meta.json: it is not a dump, or one that was interrupted; write it with `taut dump`, or use --matrix A.mtx");
-  const auto if_there = [&](const char* name) { return fs::exists(folder / name) ? folder / name : fs::path(); };
-  return {folder / "A.mtx",  folder / "b.mtx",       folder / "U.mtx",
-          folder / "z.mtx",  if_there("A_core.mtx"), if_there("guess.mtx"),
-          if_there("x.mtx"), if_there("M.mtx"),      true,
+                     "has no meta.json: it is not a dump, or one that was interrupted; write it "
+                     "with `taut dump`, or use --matrix A.mtx");
+  const auto if_there = [&](const char* name) {
+    return fs::exists(folder / name) ? folder / name : fs::path();
+  };
+  return {folder / "A.mtx",
+          folder / "b.mtx",
+          folder / "U.mtx",
+          folder / "z.mtx",
+          if_there("A_core.mtx"),
+          if_there("guess.mtx"),
+          if_there("x.mtx"),
+          if_there("M.mtx"),
+          true,
           stiffness_in(folder / "meta.json")};
 }
 
-StoredSystem::StoredSystem(const SystemFiles& files) : matrix_(to_system_matrix(read_matrix_market(files.matrix), files.matrix.string())) {
-  if (files.nodes_of_three || !files.constraints.empty()) matrix_ = in_blocks_of_three(matrix_, files.matrix);
+StoredSystem::StoredSystem(const SystemFiles& files)
+    : matrix_(to_system_matrix(read_matrix_market(files.matrix), files.matrix.string())) {
+  if (files.nodes_of_three || !files.constraints.empty())
+    matrix_ = in_blocks_of_three(matrix_, files.matrix);
   const Index n = matrix_.dofs();
   rhs_.assign(static_cast<std::size_t>(n), 0.0);
   if (files.rhs.empty()) {
@@ -82,10 +101,13 @@ StoredSystem::StoredSystem(const SystemFiles& files) : matrix_(to_system_matrix(
 void StoredSystem::read_constraints(const SystemFiles& files) {
   if (files.constraints.empty()) {
     if (!files.z.empty())
-      throw InputError({files.z.string()}, "prescribes parts of the solution, but which ones is not known: give --constraints as well");
+      throw InputError({files.z.string()},
+                       "prescribes parts of the solution, but which ones is not known: give "
+                       "--constraints as well");
     return;
   }
-  constraints_ = to_constraints(read_matrix_market(files.constraints), matrix_.rows(), files.constraints.string());
+  constraints_ = to_constraints(read_matrix_market(files.constraints), matrix_.rows(),
+                                files.constraints.string());
   z_.assign(rhs_.size(), 0.0);
   if (!files.z.empty()) z_ = read_vector(files.z, matrix_.dofs());
 }
@@ -95,16 +117,23 @@ void StoredSystem::read_core(const fs::path& path) {
   const BlockPattern& p = *matrix_.pattern;
   const Index dim = p.uniform_dim, n = matrix_.dofs();
   const auto fail = [&](Index row, Index column, const std::string& what) {
-    throw InputError({path.string()}, fmt::format("entry ({}, {}) {}: the core is made of entries of the matrix, taken or left out",
-                                                  row + 1, column + 1, what));
+    throw InputError(
+        {path.string()},
+        fmt::format(
+            "entry ({}, {}) {}: the core is made of entries of the matrix, taken or left out",
+            row + 1, column + 1, what));
   };
   if (core.dense || core.rows != n || core.columns != n)
-    throw InputError({path.string()}, fmt::format("a sparse matrix of {} rows and columns was expected, as the system's", n));
+    throw InputError(
+        {path.string()},
+        fmt::format("a sparse matrix of {} rows and columns was expected, as the system's", n));
   core_.assign(static_cast<std::size_t>(p.blocks()), 0);
   std::vector<double> copied(matrix_.values.size(), 0.0);
   const auto place = [&](Index row, Index column) {
     const Index k = p.find(row / dim, column / dim);
-    return k < 0 ? Offset{-1} : matrix_.block(row / dim, k) - matrix_.values.data() + row % dim * p.width(row / dim) + column % dim;
+    return k < 0 ? Offset{-1}
+                 : matrix_.block(row / dim, k) - matrix_.values.data() +
+                       row % dim * p.width(row / dim) + column % dim;
   };
   for (const MatrixEntry& entry : core.entries) {
     const Offset at = place(entry.row, entry.column);
@@ -118,8 +147,11 @@ void StoredSystem::read_core(const fs::path& path) {
         for (Index c = 0; c < dim; ++c) {
           const Index row = dim * i + r, column = dim * p.column[k] + c;
           const auto at = static_cast<std::size_t>(place(row, column));
-          if ((core_[k] || k == p.diagonal[i]) && std::abs(copied[at] - matrix_.values[at]) > 1e-12 * std::abs(matrix_.values[at]))
-            fail(row, column, fmt::format("is {:.9g}, but {:.9g} in the matrix", copied[at], matrix_.values[at]));
+          if ((core_[k] || k == p.diagonal[i]) &&
+              std::abs(copied[at] - matrix_.values[at]) > 1e-12 * std::abs(matrix_.values[at]))
+            fail(
+                row, column,
+                fmt::format("is {:.9g}, but {:.9g} in the matrix", copied[at], matrix_.values[at]));
         }
 }
 
@@ -127,7 +159,8 @@ void StoredSystem::read_masses(const fs::path& path) {
   const std::vector<double> of_unknowns = read_vector(path, matrix_.dofs());
   for (std::size_t i = 0; i < of_unknowns.size(); i += 3) masses_.push_back(of_unknowns[i]);
   for (const double m : masses_)
-    if (!(m > 0.0)) throw InputError({path.string()}, fmt::format("holds {:.9g}: masses are positive", m));
+    if (!(m > 0.0))
+      throw InputError({path.string()}, fmt::format("holds {:.9g}: masses are positive", m));
   rho_ = remainder_ratio(matrix_, core_, masses_);
   if (stiffness_ < 0.0) stiffness_ = 0.5 * block_diagonal_condition(matrix_) - 1.0;
 }

@@ -19,7 +19,8 @@ double total_area(const TriangleMesh& shape) {
 double mean_edge(const TriangleMesh& shape) {
   double sum = 0.0;
   for (const Triangle& t : shape.triangles)
-    for (int k = 0; k < 3; ++k) sum += (shape.positions[t[k]] - shape.positions[t[(k + 1) % 3]]).norm();
+    for (int k = 0; k < 3; ++k)
+      sum += (shape.positions[t[k]] - shape.positions[t[(k + 1) % 3]]).norm();
   return sum / (3.0 * static_cast<double>(std::max<std::size_t>(1, shape.triangles.size())));
 }
 
@@ -53,8 +54,10 @@ ClothEstimate estimate(const Cloth& cloth, const TriangleMesh& shape) {
     e.rest_damping = 3 * m.k_damp_bend;
     return e;
   }
-  const double cells = static_cast<double>(cloth.grid.nu - 1) * static_cast<double>(cloth.grid.nv - 1);
-  const double a = cloth.grid.u.norm() / (cloth.grid.nu - 1), b = cloth.grid.v.norm() / (cloth.grid.nv - 1);
+  const double cells =
+      static_cast<double>(cloth.grid.nu - 1) * static_cast<double>(cloth.grid.nv - 1);
+  const double a = cloth.grid.u.norm() / (cloth.grid.nu - 1),
+               b = cloth.grid.v.norm() / (cloth.grid.nv - 1);
   const double diagonals = 4 * std::max(a * a, b * b) / (a * a + b * b);
   e.node_mass = cloth.node_mass > 0 ? cloth.node_mass : e.mass / cells;
   e.spacing = std::max(a, b);

@@ -22,8 +22,11 @@ std::vector<double> node_masses(const Cloth& cloth, const TriangleMesh& mesh) {
   return masses;
 }
 
-// Uniform in [-1, 1) with the same bits everywhere: std::uniform_real_distribution is left to the library's taste.
-double symmetric_random(std::mt19937_64& generator) { return static_cast<double>(generator() >> 11) * 0x1.0p-52 - 1.0; }
+// Uniform in [-1, 1) with the same bits everywhere: std::uniform_real_distribution is left to the
+// library's taste.
+double symmetric_random(std::mt19937_64& generator) {
+  return static_cast<double>(generator() >> 11) * 0x1.0p-52 - 1.0;
+}
 
 Index corner_node(const GridShape& g, const std::string& name) {
   return g.node(name.starts_with("u1") ? g.nu - 1 : 0, name.ends_with("v1") ? g.nv - 1 : 0);
@@ -44,7 +47,8 @@ std::vector<Index> selected_nodes(const Cloth& cloth, const NodeSelection& where
     const bool along_v = edge[0] == 'u';
     const Index count = along_v ? g.nv : g.nu;
     const Index fixed = edge[1] == '0' ? 0 : (along_v ? g.nu : g.nv) - 1;
-    for (Index k = 0; k < count; ++k) nodes.push_back(along_v ? g.node(fixed, k) : g.node(k, fixed));
+    for (Index k = 0; k < count; ++k)
+      nodes.push_back(along_v ? g.node(fixed, k) : g.node(k, fixed));
   }
   std::sort(nodes.begin(), nodes.end());
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
@@ -54,16 +58,19 @@ std::vector<Index> selected_nodes(const Cloth& cloth, const NodeSelection& where
 Vec3 PinnedNodes::target(std::size_t k, double time) const {
   if (path.key_frames.empty()) return start[k];
   const Pose now = path.pose(time), origin = path.pose(0.0);
-  return pivot + now.rotation * (origin.rotation.conjugate() * (start[k] - pivot)) + now.translation - origin.translation;
+  return pivot + now.rotation * (origin.rotation.conjugate() * (start[k] - pivot)) +
+         now.translation - origin.translation;
 }
 
 ClothModel::ClothModel(const Scene& scene) {
   std::vector<double> masses;
   for (const Cloth& cloth : scene.cloths) add_cloth(cloth, scene, masses);
-  if (scene.time.integrator == IntegratorKind::imex_adaptive) springs_ = split_by_stability(std::move(springs_), masses, scene.time.step);
+  if (scene.time.integrator == IntegratorKind::imex_adaptive)
+    springs_ = split_by_stability(std::move(springs_), masses, scene.time.step);
   start_.v.resize(start_.x.size(), Vec3::Zero());
-  external_ = std::make_unique<ExternalForces>(std::move(masses), scene.gravity,
-                                               WindOptions{scene.wind.velocity, scene.wind.gust, scene.wind.gust_frequency});
+  external_ = std::make_unique<ExternalForces>(
+      std::move(masses), scene.gravity,
+      WindOptions{scene.wind.velocity, scene.wind.gust, scene.wind.gust_frequency});
   for (std::size_t c = 0; c < parts_.size(); ++c) {
     const Cloth& cloth = scene.cloths[c];
     const ClothPart& part = parts_[c];
@@ -71,7 +78,9 @@ ClothModel::ClothModel(const Scene& scene) {
       external_->set_drag(i, cloth.drag);
       start_.v[i] = cloth.velocity;
     }
-    external_->add_wind_surface(std::span(surface_.triangles).subspan(part.first_triangle, part.triangle_count), cloth.wind_pressure);
+    external_->add_wind_surface(
+        std::span(surface_.triangles).subspan(part.first_triangle, part.triangle_count),
+        cloth.wind_pressure);
     add_pins(cloth, part);
   }
   surface_.positions = start_.x;
@@ -86,16 +95,20 @@ void ClothModel::add_cloth(const Cloth& cloth, const Scene& scene, std::vector<d
                  static_cast<Index>(mesh.triangles.size()),
                  0};
   if (cloth.from_file) part.file_sum = sum_of(mesh);
-  // Rest lengths are those of the shape before placement and jitter, which only say where it starts.
-  auto springs = cloth.is_grid() ? grid_springs(cloth.grid, mesh.positions, cloth.material, part.first_node, cloth.name)
+  // Rest lengths are those of the shape before placement and jitter, which only say where it
+  // starts.
+  auto springs = cloth.is_grid() ? grid_springs(cloth.grid, mesh.positions, cloth.material,
+                                                part.first_node, cloth.name)
                                  : mesh_springs(mesh, cloth.material, part.first_node, cloth.name);
   for (auto& model : springs) springs_.push_back(std::move(model));
   const std::vector<double> own_masses = node_masses(cloth, mesh);
   masses.insert(masses.end(), own_masses.begin(), own_masses.end());
   for (std::size_t i = 0; i < own_masses.size(); ++i)
     if (!(own_masses[i] > 0.0))
-      throw InputError(fmt::format("cloth '{}': vertex {} has no mass, since it is a corner of no triangle; remove it or give node_mass",
-                                   cloth.name, i + 1));
+      throw InputError(
+          fmt::format("cloth '{}': vertex {} has no mass, since it is a corner of no triangle; "
+                      "remove it or give node_mass",
+                      cloth.name, i + 1));
 
   std::mt19937_64 generator(cloth.jitter_seed);
   for (const Vec3& rest : mesh.positions) {
@@ -105,7 +118,8 @@ void ClothModel::add_cloth(const Cloth& cloth, const Scene& scene, std::vector<d
     start_.x.push_back(x);
   }
   for (const Triangle& t : mesh.triangles)
-    surface_.triangles.push_back({t[0] + part.first_node, t[1] + part.first_node, t[2] + part.first_node});
+    surface_.triangles.push_back(
+        {t[0] + part.first_node, t[1] + part.first_node, t[2] + part.first_node});
   mesh.texcoords.resize(mesh.positions.size(), Vec2::Zero());
   surface_.texcoords.insert(surface_.texcoords.end(), mesh.texcoords.begin(), mesh.texcoords.end());
   parts_.push_back(part);
@@ -120,7 +134,8 @@ void ClothModel::add_pins(const Cloth& cloth, const ClothPart& part) {
     for (const Index node : selected_nodes(cloth, pin.where)) {
       if (node < 0 || node >= part.node_count)
         throw InputError(pin.nodes_at,
-                         fmt::format("cloth '{}': a pin holds node {}, but its nodes are 0 to {}; name nodes from 0, vertex 1 of a file is "
+                         fmt::format("cloth '{}': a pin holds node {}, but its nodes are 0 to {}; "
+                                     "name nodes from 0, vertex 1 of a file is "
                                      "node 0",
                                      cloth.name, node, part.node_count - 1));
       pinned.nodes.push_back(part.first_node + node);
@@ -148,10 +163,12 @@ std::vector<const SpringModel*> ClothModel::stretch_springs() const {
   return models;
 }
 
-void ClothModel::constrain_pins(double time, double h, std::span<const Vec3> x, ConstraintSet& constraints) const {
+void ClothModel::constrain_pins(double time, double h, std::span<const Vec3> x,
+                                ConstraintSet& constraints) const {
   for (const PinnedNodes& pin : pins_) {
     if (!pin.holds(time)) continue;
-    for (std::size_t k = 0; k < pin.nodes.size(); ++k) constraints.fix(pin.nodes[k], pin.target(k, time + h) - x[pin.nodes[k]]);
+    for (std::size_t k = 0; k < pin.nodes.size(); ++k)
+      constraints.fix(pin.nodes[k], pin.target(k, time + h) - x[pin.nodes[k]]);
   }
 }
 

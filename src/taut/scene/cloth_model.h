@@ -1,6 +1,6 @@
 #pragma once
-// The scene's cloths as one system of nodes: positions, masses, springs, pins. Nodes of cloth c are first_node ... first_node + node_count - 1, in
-// the order of its grid or file.
+// The scene's cloths as one system of nodes: positions, masses, springs, pins. Nodes of cloth c are
+// first_node ... first_node + node_count - 1, in the order of its grid or file.
 
 #include <memory>
 
@@ -25,10 +25,10 @@ std::vector<Index> selected_nodes(const Cloth& cloth, const NodeSelection& where
 // A pin's nodes and their places at time 0.
 struct PinnedNodes {
   std::vector<Index> nodes;
-  std::vector<Vec3> start;   // m
-  Solid path;                // carries the key frames; its pose is the pin's
+  std::vector<Vec3> start;  // m
+  Solid path;               // carries the key frames; its pose is the pin's
   Vec3 pivot = Vec3::Zero();
-  double release = -1.0;     // s
+  double release = -1.0;  // s
   // Where a node should be at this time, m.
   Vec3 target(std::size_t k, double time) const;
   bool holds(double time) const { return release < 0.0 || time < release; }
@@ -36,7 +36,8 @@ struct PinnedNodes {
 
 class ClothModel {
  public:
-  // Builds everything the scene says; reads mesh files. Throws InputError (unreadable mesh, faulty triangles, pins of nodes that do not exist).
+  // Builds everything the scene says; reads mesh files. Throws InputError (unreadable mesh, faulty
+  // triangles, pins of nodes that do not exist).
   explicit ClothModel(const Scene& scene);
 
   Index nodes() const { return static_cast<Index>(start_.x.size()); }
@@ -52,8 +53,10 @@ class ClothModel {
   // Other start positions, one a node; what pins hold must be where it was. m.
   void place_start(std::span<const Vec3> x);
 
-  // The pins' constraints for a step from x at `time` to time + h: displacements to where the path will be.
-  void constrain_pins(double time, double h, std::span<const Vec3> x, ConstraintSet& constraints) const;
+  // The pins' constraints for a step from x at `time` to time + h: displacements to where the path
+  // will be.
+  void constrain_pins(double time, double h, std::span<const Vec3> x,
+                      ConstraintSet& constraints) const;
 
  private:
   void add_cloth(const Cloth& cloth, const Scene& scene, std::vector<double>& masses);

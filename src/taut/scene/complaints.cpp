@@ -13,14 +13,17 @@ namespace {
 std::string advice(const std::string& problem) {
   const auto says = [&](const char* words) { return problem.find(words) != std::string::npos; };
   if (says("cannot redefine existing table"))
-    return "; a table's keys all stand below one [header]; several of a kind are [[double brackets]]";
+    return "; a table's keys all stand below one [header]; several of a kind are [[double "
+           "brackets]]";
   if (says("cannot redefine existing array")) return "; write [[double brackets]] each time";
   if (says("cannot redefine")) return "; the key stands here a second time: remove one of the two";
   if (says("expected digit") || says("decimal integer") || says("floating-point"))
     return "; a number stands without a unit (5 ms is 5e-3), a text in quotes";
-  if (says("end-of-file")) return "; something was opened that is never closed, or a value is missing";
+  if (says("end-of-file"))
+    return "; something was opened that is never closed, or a value is missing";
   if (says("inline table")) return "; { ... } stands on one line, parts separated by commas";
-  if (says("value type") || says("key-value pair")) return "; a line reads key = value, and a text stands in quotes";
+  if (says("value type") || says("key-value pair"))
+    return "; a line reads key = value, and a text stands in quotes";
   return "";
 }
 
@@ -32,7 +35,9 @@ SourcePlace source_place(const toml::source_region& where) {
   return {file, static_cast<int>(where.begin.line), static_cast<int>(where.begin.column)};
 }
 
-std::string located(const toml::source_region& where, const std::string& message) { return located(source_place(where), message); }
+std::string located(const toml::source_region& where, const std::string& message) {
+  return located(source_place(where), message);
+}
 
 void Complaints::add(const toml::source_region& where, const std::string& message) {
   // Changes from the command line come after those of the file.
@@ -48,19 +53,24 @@ void Complaints::add(const toml::source_region& where, const std::string& messag
 void Complaints::throw_if_any() const {
   if (all_.empty()) return;
   std::vector<Complaint> sorted = all_;
-  std::stable_sort(sorted.begin(), sorted.end(), [](const Complaint& a, const Complaint& b) { return a.at < b.at; });
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [](const Complaint& a, const Complaint& b) { return a.at < b.at; });
   std::string text;
-  for (std::size_t i = 0; i < std::min(sorted.size(), max_shown); ++i) text += (i ? "\n" : "") + sorted[i].text;
+  for (std::size_t i = 0; i < std::min(sorted.size(), max_shown); ++i)
+    text += (i ? "\n" : "") + sorted[i].text;
   if (sorted.size() > max_shown) text += fmt::format("\nand {} more", sorted.size() - max_shown);
   throw InputError(text);
 }
 
 std::string found(const toml::node& value) {
-  if (const auto text = value.value_exact<std::string>()) return "the text \"" + text->substr(0, 60) + "\"";
-  if (const auto integer = value.value_exact<std::int64_t>()) return fmt::format("the integer {}", *integer);
+  if (const auto text = value.value_exact<std::string>())
+    return "the text \"" + text->substr(0, 60) + "\"";
+  if (const auto integer = value.value_exact<std::int64_t>())
+    return fmt::format("the integer {}", *integer);
   if (const auto number = value.value_exact<double>()) return fmt::format("the number {}", *number);
   if (const auto flag = value.value_exact<bool>()) return *flag ? "true" : "false";
-  if (const toml::array* array = value.as_array()) return fmt::format("an array of {}", array->size());
+  if (const toml::array* array = value.as_array())
+    return fmt::format("an array of {}", array->size());
   return value.is_table() ? "a table" : "a date or time";
 }
 

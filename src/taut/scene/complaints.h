@@ -1,6 +1,7 @@
 #pragma once
-// What is wrong with a TOML document, collected with its places, so that a user mends several mistakes at once.
-// A change from the command line is part of the document with "--set key=value" as its file name.
+// What is wrong with a TOML document, collected with its places, so that a user mends several
+// mistakes at once. A change from the command line is part of the document with "--set key=value"
+// as its file name.
 
 #include <toml++/toml.h>
 

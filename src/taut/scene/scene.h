@@ -1,6 +1,7 @@
 #pragma once
-// A scene: everything a simulation needs, as plain options, units SI. Read from TOML by scene/scene_file.h, which is also where every key's
-// meaning, unit, range and default are written down (docs/scene-reference.md is generated from there).
+// A scene: everything a simulation needs, as plain options, units SI. Read from TOML by
+// scene/scene_file.h, which is also where every key's meaning, unit, range and default are written
+// down (docs/scene-reference.md is generated from there).
 
 #include <filesystem>
 #include <string>
@@ -24,7 +25,8 @@ struct TimeOptions {
   int steps_per_frame = 1;
   IntegratorKind integrator = IntegratorKind::semi_implicit_euler;
   NewtonOptions newton;
-  double overshoot_limit = 0.05;  // share of a spring's rest length, element/overshoot.h; beyond it the step is halved
+  // share of a spring's rest length, element/overshoot.h; beyond it the step is halved
+  double overshoot_limit = 0.05;
   int max_halvings = 4;
   bool operator==(const TimeOptions&) const = default;
 };
@@ -37,13 +39,15 @@ struct NodeSelection {
   bool operator==(const NodeSelection&) const = default;
 };
 
-// Where a scene file says something, for messages about what is found out later; no part of what the scene is.
+// Where a scene file says something, for messages about what is found out later; no part of what
+// the scene is.
 struct WrittenAt : SourcePlace {
   bool operator==(const WrittenAt&) const { return true; }
 };
 
-// A pin holds nodes still, or carries them along a path: the displacement of the path since time 0 is added to where the nodes started, and
-// they turn about `pivot` with the key frames' rotation. Between key frames as Solid. After `release` (s) the nodes are free.
+// A pin holds nodes still, or carries them along a path: the displacement of the path since time 0
+// is added to where the nodes started, and they turn about `pivot` with the key frames' rotation.
+// Between key frames as Solid. After `release` (s) the nodes are free.
 struct Pin {
   NodeSelection where;
   std::vector<KeyFrame> key_frames;
@@ -55,33 +59,40 @@ struct Pin {
 
 struct Cloth {
   std::string name;
-  // Shape: a grid (Provot springs), or a tube or a triangle mesh from a file (stretch on edges, bend across edges).
+  // Shape: a grid (Provot springs), or a tube or a triangle mesh from a file (stretch on edges,
+  // bend across edges).
   bool from_file = false;
   bool is_tube = false;
   GridShape grid;
   TubeShape tube;
   bool is_grid() const { return !from_file && !is_tube; }
-  std::filesystem::path mesh;  // OBJ, PLY or USD; absolute after reading (in a file: relative to it)
-  std::string prim;            // which mesh of a USD file; empty: its only one
-  double scale = 1.0;          // of the file's coordinates; 0.01 for centimetres
-  Pose placement;              // applied after scale
-  bool y_up = false;           // turn Y-up files to Taut's Z-up
-  double node_mass = 0.0;      // kg, each; or
-  double density = 0.0;        // kg/m², spread over the triangles' corners; exactly one of the two is > 0
-  double drag = 0.0;           // kg/s a node: force -drag (v - wind)
-  double wind_pressure = 0.0;  // kg/(m² s): force c A (n·(wind - v)) n on each triangle of area A and normal n, a third to each node
+  // OBJ, PLY or USD; absolute after reading (in a file: relative to it)
+  std::filesystem::path mesh;
+  std::string prim;        // which mesh of a USD file; empty: its only one
+  double scale = 1.0;      // of the file's coordinates; 0.01 for centimetres
+  Pose placement;          // applied after scale
+  bool y_up = false;       // turn Y-up files to Taut's Z-up
+  double node_mass = 0.0;  // kg, each; or
+  // kg/m², spread over the triangles' corners; exactly one of the two is > 0
+  double density = 0.0;
+  double drag = 0.0;  // kg/s a node: force -drag (v - wind)
+  // kg/(m² s): force c A (n·(wind - v)) n on each triangle of area A and normal n, a third to each
+  // node
+  double wind_pressure = 0.0;
   SpringMaterial material;
   std::vector<Pin> pins;
   Vec3 velocity = Vec3::Zero();  // m/s at the start
-  double jitter = 0.0;           // m: each start coordinate is moved by up to this, from `jitter_seed`
+  // m: each start coordinate is moved by up to this, from `jitter_seed`
+  double jitter = 0.0;
   unsigned jitter_seed = 1;
   bool operator==(const Cloth&) const = default;
 };
 
 struct Wind {
   Vec3 velocity = Vec3::Zero();  // m/s
-  double gust = 0.0;             // share of velocity: wind(t) = velocity (1 + gust sin(2π gust_frequency t))
-  double gust_frequency = 1.0;   // Hz
+  // share of velocity: wind(t) = velocity (1 + gust sin(2π gust_frequency t))
+  double gust = 0.0;
+  double gust_frequency = 1.0;  // Hz
   bool operator==(const Wind&) const = default;
 };
 

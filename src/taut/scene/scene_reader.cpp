@@ -50,12 +50,15 @@ Scene read(const toml::table& document, const fs::path& path) {
 
 }  // namespace
 
-Scene read_scene_text(const std::string& text, const fs::path& path, std::span<const std::string> settings) {
+Scene read_scene_text(const std::string& text, const fs::path& path,
+                      std::span<const std::string> settings) {
   toml::table document = parse(text, path.string());
   for (const std::string& setting : settings) apply_setting(document, setting);
   return read(document, path);
 }
 
-Scene read_scene(const fs::path& path, std::span<const std::string> settings) { return read_scene_text(read_file(path), path, settings); }
+Scene read_scene(const fs::path& path, std::span<const std::string> settings) {
+  return read_scene_text(read_file(path), path, settings);
+}
 
 }  // namespace taut

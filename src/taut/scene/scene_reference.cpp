@@ -12,9 +12,11 @@ constexpr const char* opening = R"(# Scene files
 <!-- Generated from the declarations in src/taut/scene/schema*.cpp: change those, then run the test
      scene.SceneReference with TAUT_UPDATE=1 in the environment. -->
 
-A scene is a [TOML](https://toml.io) file. Units are SI: m, kg, s, N. Whatever is left out has the default of the tables below; whatever is
-not in these tables is an error. `taut check SCENE.toml` says what is wrong or doubtful. On the command line `--set KEY=VALUE` changes a key:
-`--set time.step=2e-3`, `--set cloth.k_stretch=600` (every cloth), `--set cloth.0.k_stretch=600` (the first).
+A scene is a [TOML](https://toml.io) file. Units are SI: m, kg, s, N. Whatever is left out has the
+default of the tables below; whatever is not in these tables is an error. `taut check SCENE.toml`
+says what is wrong or doubtful. On the command line `--set KEY=VALUE` changes a key:
+`--set time.step=2e-3`, `--set cloth.k_stretch=600` (every cloth), `--set cloth.0.k_stretch=600`
+(the first).
 
 ```toml
 [time]
@@ -32,8 +34,8 @@ radius = 0.2
 translation = [0.5, 0.5, 0.6]
 ```
 
-A *rotation* is `{ axis = [x, y, z], degrees = angle }`, right-handed, about an axis of any length; programs may write
-`{ quaternion = [w, x, y, z] }`. Vectors are `[x, y, z]`.
+A *rotation* is `{ axis = [x, y, z], degrees = angle }`, right-handed, about an axis of any
+length; programs may write `{ quaternion = [w, x, y, z] }`. Vectors are `[x, y, z]`.
 )";
 
 // A | would end the cell.
@@ -45,9 +47,11 @@ std::string cell(const std::string& text) {
 
 std::string row(const CatalogueKey& key) {
   const std::string only = key.only_for.empty() ? "" : " Only for " + key.only_for + ".";
-  const std::string standard = key.standard.empty() || key.standard == "required" ? key.standard : "`" + key.standard + "`";
-  return fmt::format("| `{}` | {} | {} | {} | {} | {}{} |\n", key.name, cell(key.type), cell(key.unit), cell(key.range), cell(standard),
-                     cell(key.doc), only.empty() ? "" : "." + only);
+  const std::string standard =
+      key.standard.empty() || key.standard == "required" ? key.standard : "`" + key.standard + "`";
+  return fmt::format("| `{}` | {} | {} | {} | {} | {}{} |\n", key.name, cell(key.type),
+                     cell(key.unit), cell(key.range), cell(standard), cell(key.doc),
+                     only.empty() ? "" : "." + only);
 }
 
 }  // namespace
@@ -55,8 +59,8 @@ std::string row(const CatalogueKey& key) {
 std::string scene_reference() {
   std::string text = opening;
   for (const CatalogueTable& table : schema_catalogue()) {
-    text +=
-        table.path.empty() ? "\n## Top level\n\nBefore the first table.\n" : fmt::format("\n## `{}`\n\n{}\n", table.heading(), table.doc);
+    text += table.path.empty() ? "\n## Top level\n\nBefore the first table.\n"
+                               : fmt::format("\n## `{}`\n\n{}\n", table.heading(), table.doc);
     text += "\n| key | type | unit | range | default | meaning |\n|---|---|---|---|---|---|\n";
     for (const CatalogueKey& key : table.keys) text += row(key);
   }

@@ -19,7 +19,9 @@ struct Setting {
   std::string value;
 };
 
-[[noreturn]] void refuse(const std::string& place, const std::string& why) { throw InputError({place}, why); }
+[[noreturn]] void refuse(const std::string& place, const std::string& why) {
+  throw InputError({place}, why);
+}
 
 std::vector<std::string> split(const std::string& path, const std::string& place) {
   std::vector<std::string> parts{""};
@@ -38,7 +40,8 @@ Setting parse_setting(const std::string& text) {
   const std::string place = "--set " + text;
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos) refuse(place, "expected key=value, as in time.step=2e-3");
-  if (equals + 1 == text.size()) refuse(place, "there is no value after '='; an empty text is '\"\"'");
+  if (equals + 1 == text.size())
+    refuse(place, "there is no value after '='; an empty text is '\"\"'");
   return {place, split(text.substr(0, equals), place), text.substr(equals + 1)};
 }
 
@@ -71,13 +74,20 @@ void assign_entries(toml::array& array, const Setting& setting, std::size_t dept
   const bool numbered = failure == std::errc() && end == part.data() + part.size();
   const std::string list = fmt::format("{}", setting.path[depth - 1]);
   if (numbered && index >= array.size())
-    refuse(setting.place, fmt::format("there is no number {} in '{}', which has {}, counted from 0", index, list, array.size()));
-  if (numbered && depth + 1 == setting.path.size()) refuse(setting.place, "name a key of this entry, as in cloth.0.k_stretch=600");
-  if (!numbered && array.empty()) refuse(setting.place, "'" + list + "' has no entries that could be changed");
+    refuse(setting.place, fmt::format("there is no number {} in '{}', which has {}, counted from 0",
+                                      index, list, array.size()));
+  if (numbered && depth + 1 == setting.path.size())
+    refuse(setting.place, "name a key of this entry, as in cloth.0.k_stretch=600");
+  if (!numbered && array.empty())
+    refuse(setting.place, "'" + list + "' has no entries that could be changed");
   for (std::size_t i = 0; i < array.size(); ++i) {
     if (numbered && i != index) continue;
     toml::table* entry = array.get(i)->as_table();
-    if (!entry) refuse(setting.place, fmt::format("'{}' is not a list of tables: set it as a whole, as in gravity=[0,0,-1.6]", list));
+    if (!entry)
+      refuse(
+          setting.place,
+          fmt::format("'{}' is not a list of tables: set it as a whole, as in gravity=[0,0,-1.6]",
+                      list));
     assign(*entry, setting, depth + (numbered ? 1 : 0));
   }
 }
@@ -87,7 +97,8 @@ void assign(toml::table& table, const Setting& setting, std::size_t depth) {
   if (depth + 1 == setting.path.size()) return insert(table, name, parse_value(setting));
   toml::node* next = table.get(name);
   if (next && next->is_array()) return assign_entries(*next->as_array(), setting, depth + 1);
-  if (next && !next->is_table()) refuse(setting.place, "'" + name + "' holds a value, it has no keys below it");
+  if (next && !next->is_table())
+    refuse(setting.place, "'" + name + "' holds a value, it has no keys below it");
   if (!next && (name == "cloth" || name == "solid" || name == "pin" || name == "key_frames"))
     refuse(setting.place, "the scene has no '" + name + "' that could be changed");
   if (!next) insert(table, name, toml::parse("v = {}", setting.place));
@@ -96,6 +107,8 @@ void assign(toml::table& table, const Setting& setting, std::size_t depth) {
 
 }  // namespace
 
-void apply_setting(toml::table& document, const std::string& setting) { assign(document, parse_setting(setting), 0); }
+void apply_setting(toml::table& document, const std::string& setting) {
+  assign(document, parse_setting(setting), 0);
+}
 
 }  // namespace taut

@@ -16,23 +16,42 @@ class Cataloguer final : public SchemaVisitor {
  public:
   std::vector<CatalogueTable> result{{}};
 
-  void number(const char* key, double& value, const KeyInfo& info) override { add(key, "number", to_toml(value), info); }
-  void integer(const char* key, int& value, const KeyInfo& info) override { add(key, "integer", std::to_string(value), info); }
-  void flag(const char* key, bool& value, const KeyInfo& info) override { add(key, "true or false", value ? "true" : "false", info); }
-  void text(const char* key, std::string& value, const KeyInfo& info) override { add(key, "text", to_toml(value), info); }
-  void file(const char* key, std::filesystem::path&, const KeyInfo& info) override { add(key, "file name", "", info); }
-  void vector(const char* key, Vec3& value, const KeyInfo& info) override { add(key, "[x, y, z]", to_toml(value), info); }
-  void rotation(const char* key, Eigen::Quaterniond& value, const KeyInfo& info) override { add(key, "rotation", to_toml(value), info); }
-  void integers(const char* key, std::vector<Index>& value, const KeyInfo& info) override {
-    add(key, info.count ? fmt::format("{} integers", info.count) : "integers", to_toml(value), info);
+  void number(const char* key, double& value, const KeyInfo& info) override {
+    add(key, "number", to_toml(value), info);
   }
-  void choose(const char* key, int& value, std::span<const char* const> names, const KeyInfo& info) override {
+  void integer(const char* key, int& value, const KeyInfo& info) override {
+    add(key, "integer", std::to_string(value), info);
+  }
+  void flag(const char* key, bool& value, const KeyInfo& info) override {
+    add(key, "true or false", value ? "true" : "false", info);
+  }
+  void text(const char* key, std::string& value, const KeyInfo& info) override {
+    add(key, "text", to_toml(value), info);
+  }
+  void file(const char* key, std::filesystem::path&, const KeyInfo& info) override {
+    add(key, "file name", "", info);
+  }
+  void vector(const char* key, Vec3& value, const KeyInfo& info) override {
+    add(key, "[x, y, z]", to_toml(value), info);
+  }
+  void rotation(const char* key, Eigen::Quaterniond& value, const KeyInfo& info) override {
+    add(key, "rotation", to_toml(value), info);
+  }
+  void integers(const char* key, std::vector<Index>& value, const KeyInfo& info) override {
+    add(key, info.count ? fmt::format("{} integers", info.count) : "integers", to_toml(value),
+        info);
+  }
+  void choose(const char* key, int& value, std::span<const char* const> names,
+              const KeyInfo& info) override {
     add(key, quoted(names), to_toml(std::string(names[static_cast<std::size_t>(value)])), info);
   }
-  void choose_some(const char* key, std::vector<std::string>&, std::span<const char* const> names, const KeyInfo& info) override {
+  void choose_some(const char* key, std::vector<std::string>&, std::span<const char* const> names,
+                   const KeyInfo& info) override {
     add(key, "array of " + quoted(names), "", info);
   }
-  void table(const char* key, const KeyInfo& info, const std::function<void()>& inside) override { enter(key, false, info, inside); }
+  void table(const char* key, const KeyInfo& info, const std::function<void()>& inside) override {
+    enter(key, false, info, inside);
+  }
   bool given(const char*, bool now) override { return now; }
   void exactly_one(std::span<const char* const> keys) override {
     result[here_].doc += fmt::format(" Exactly one of `{}` is given.", fmt::join(keys, "`, `"));
@@ -49,13 +68,17 @@ class Cataloguer final : public SchemaVisitor {
   }
 
  private:
-  static std::string quoted(std::span<const char* const> names) { return fmt::format("\"{}\"", fmt::join(names, "\", \"")); }
+  static std::string quoted(std::span<const char* const> names) {
+    return fmt::format("\"{}\"", fmt::join(names, "\", \""));
+  }
 
-  void add(const char* key, const std::string& type, const std::string& standard, const KeyInfo& info) {
+  void add(const char* key, const std::string& type, const std::string& standard,
+           const KeyInfo& info) {
     const std::string shown = info.required ? "required" : info.unset ? "" : standard;
     KeyInfo bare = info;
     bare.unit = "";
-    result[here_].keys.push_back({key, type, info.unit, range_text(bare), shown, info.doc, info.only_for});
+    result[here_].keys.push_back(
+        {key, type, info.unit, range_text(bare), shown, info.doc, info.only_for});
   }
 
   void enter(const char* key, bool list, const KeyInfo& info, const std::function<void()>& inside) {

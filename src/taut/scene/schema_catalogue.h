@@ -1,5 +1,6 @@
 #pragma once
-// All keys of the scene format as a list, for the reference page and for advice about misplaced keys.
+// All keys of the scene format as a list, for the reference page and for advice about misplaced
+// keys.
 
 #include <string>
 #include <vector>

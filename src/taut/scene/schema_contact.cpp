@@ -12,16 +12,20 @@ namespace {
 
 void describe_pair(SchemaVisitor& v, ContactPair& pair) {
   v.text("cloth", pair.cloth, {.doc = "name of a cloth", .required = true});
-  v.text("with", pair.with, {.doc = "name of a cloth or solid; the same cloth: its own layers", .required = true});
-  v.number(
-      "thickness", pair.thickness,
-      {.doc = "they keep this far apart: two cloths middle to middle, a cloth from a solid's surface; when not given: as without the pair",
-       .unit = "m",
-       .min = 0,
-       .max = 1,
-       .unset = pair.thickness < 0.0});
+  v.text("with", pair.with,
+         {.doc = "name of a cloth or solid; the same cloth: its own layers", .required = true});
+  v.number("thickness", pair.thickness,
+           {.doc = "they keep this far apart: two cloths middle to middle, a cloth from a solid's "
+                   "surface; when not given: as without the pair",
+            .unit = "m",
+            .min = 0,
+            .max = 1,
+            .unset = pair.thickness < 0.0});
   v.number("friction", pair.friction,
-           {.doc = "Coulomb's μ; when not given: as without the pair", .min = 0, .max = 100, .unset = pair.friction < 0.0});
+           {.doc = "Coulomb's μ; when not given: as without the pair",
+            .min = 0,
+            .max = 100,
+            .unset = pair.friction < 0.0});
 }
 
 template <class Named>
@@ -36,25 +40,42 @@ bool same_bodies(const ContactPair& a, const ContactPair& b) {
 }  // namespace
 
 void describe_contact(SchemaVisitor& v, ContactOptions& contact) {
-  v.integer("max_passes", contact.max_passes,
-            {.doc = "solves per step, at most, until the contacts and their stick or slide no longer change", .min = 1, .max = 1000});
+  v.integer(
+      "max_passes", contact.max_passes,
+      {.doc =
+           "solves per step, at most, until the contacts and their stick or slide no longer change",
+       .min = 1,
+       .max = 1000});
   v.number("touch_tolerance", contact.touch_tolerance,
-           {.doc = "a node this close to a solid's thickened surface touches it", .unit = "m", .min = 0, .max = 0.1});
-  v.flag("self", contact.self, {.doc = "keeps cloth from passing through itself, other cloths and mesh solids"});
+           {.doc = "a node this close to a solid's thickened surface touches it",
+            .unit = "m",
+            .min = 0,
+            .max = 0.1});
+  v.flag("self", contact.self,
+         {.doc = "keeps cloth from passing through itself, other cloths and mesh solids"});
   v.number("thickness", contact.thickness,
-           {.doc = "layers of cloth keep this far apart, middle to middle; 0: a tenth of the mean edge, at most 1 mm",
+           {.doc = "layers of cloth keep this far apart, middle to middle; 0: a tenth of the mean "
+                   "edge, at most 1 mm",
             .unit = "m",
             .min = 0,
             .max = 1});
-  v.number("friction", contact.friction, {.doc = "Coulomb's μ of cloth on cloth", .min = 0, .max = 100});
-  v.integer("sweeps", contact.sweeps,
-            {.doc = "rounds of impulses, at most, before nodes that still collide are held as rigid zones", .min = 0, .max = 1000});
+  v.number("friction", contact.friction,
+           {.doc = "Coulomb's μ of cloth on cloth", .min = 0, .max = 100});
+  v.integer(
+      "sweeps", contact.sweeps,
+      {.doc =
+           "rounds of impulses, at most, before nodes that still collide are held as rigid zones",
+       .min = 0,
+       .max = 1000});
   v.integer("check_every", contact.check_every,
-            {.doc = "steps from one exact check for intersections (stats.csv) to the next; 0: none", .min = 0, .max = 1e6});
+            {.doc = "steps from one exact check for intersections (stats.csv) to the next; 0: none",
+             .min = 0,
+             .max = 1e6});
   v.flag("allow_intersections", contact.allow_intersections,
          {.doc = "starts although the cloths intersect; what has passed through then may stay so"});
   v.flag("untangle", contact.untangle,
-         {.doc = "cloth that intersects at the start, or is inside a solid, is drawn apart before the first step, as `--untangle` does; "
+         {.doc = "cloth that intersects at the start, or is inside a solid, is drawn apart before "
+                 "the first step, as `--untangle` does; "
                  "pinned nodes stay"});
   v.list("pair", contact.pairs, {.doc = "Another thickness or friction for two of the bodies."},
          [&](ContactPair& pair) { describe_pair(v, pair); });
@@ -68,12 +89,16 @@ void check_pairs(SchemaVisitor& v, const Scene& scene) {
       v.check(holds, "contact", fmt::format("contact.pair number {} (from 0): {}", k, what));
     };
     const bool with_cloth = has_name(scene.cloths, pair.with);
-    complain(has_name(scene.cloths, pair.cloth), fmt::format("there is no cloth named '{}'", pair.cloth));
-    complain(with_cloth || has_name(scene.solids, pair.with), fmt::format("there is no cloth or solid named '{}'", pair.with));
+    complain(has_name(scene.cloths, pair.cloth),
+             fmt::format("there is no cloth named '{}'", pair.cloth));
+    complain(with_cloth || has_name(scene.solids, pair.with),
+             fmt::format("there is no cloth or solid named '{}'", pair.with));
     complain(pair.thickness >= 0.0 || pair.friction >= 0.0, "give a thickness, a friction or both");
-    complain(!with_cloth || pair.thickness != 0.0, "two cloths cannot be 0 apart: give a thickness above 0");
+    complain(!with_cloth || pair.thickness != 0.0,
+             "two cloths cannot be 0 apart: give a thickness above 0");
     for (std::size_t j = 0; j < k; ++j)
-      complain(!same_bodies(pairs[j], pair), fmt::format("number {} is of the same two: keep one of them", j));
+      complain(!same_bodies(pairs[j], pair),
+               fmt::format("number {} is of the same two: keep one of them", j));
   }
 }
 

@@ -15,11 +15,17 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::string with_unit(const std::string& text, const KeyInfo& info) { return *info.unit ? text + " " + info.unit : text; }
+std::string with_unit(const std::string& text, const KeyInfo& info) {
+  return *info.unit ? text + " " + info.unit : text;
+}
 
-std::string hint(const KeyInfo& info) { return *info.hint ? std::string("; ") + info.hint : std::string(); }
+std::string hint(const KeyInfo& info) {
+  return *info.hint ? std::string("; ") + info.hint : std::string();
+}
 
-std::vector<std::string> strings(std::span<const char* const> names) { return {names.begin(), names.end()}; }
+std::vector<std::string> strings(std::span<const char* const> names) {
+  return {names.begin(), names.end()};
+}
 
 std::string suggestion(const std::string& word, const std::vector<std::string>& known) {
   const std::string near = nearest_name(word, known);
@@ -41,7 +47,8 @@ std::string range_text(const KeyInfo& info) {
   return with_unit(text, info);
 }
 
-TomlReader::TomlReader(const toml::table& document, fs::path folder, Home home, Complaints& complaints)
+TomlReader::TomlReader(const toml::table& document, fs::path folder, Home home,
+                       Complaints& complaints)
     : folder_(std::move(folder)), home_(std::move(home)), complaints_(complaints) {
   levels_.push_back({&document, "", {}, complaints.size()});
 }
@@ -50,10 +57,13 @@ void TomlReader::complain(const toml::node& node, const char* key, const std::st
   complaints_.add(node.source(), level().path + key + message);
 }
 
-void TomlReader::wrong_type(const toml::node& node, const char* key, const std::string& expected, const KeyInfo& info) {
+void TomlReader::wrong_type(const toml::node& node, const char* key, const std::string& expected,
+                            const KeyInfo& info) {
   std::string advice;
   const auto text = node.value_exact<std::string>();
-  const bool number_in_quotes = text && !text->empty() && std::string("+-.0123456789").find(text->front()) != std::string::npos;
+  const bool number_in_quotes =
+      text && !text->empty() &&
+      std::string("+-.0123456789").find(text->front()) != std::string::npos;
   if (number_in_quotes) advice = "; write the number without quotes and without a unit";
   complain(node, key, ": expected " + expected + ", found " + found(node) + advice + hint(info));
 }
@@ -63,25 +73,31 @@ const toml::node* TomlReader::take(const char* key, const KeyInfo& info) {
   const auto entry = level().table->find(std::string_view(key));
   const bool present = entry != level().table->end();
   if (present && info.applies) return &entry->second;
-  // Whether a key applies depends on other keys: when one of those is wrong already, this complaint would only mislead.
+  // Whether a key applies depends on other keys: when one of those is wrong already, this complaint
+  // would only mislead.
   const bool in_doubt = *info.only_for && complaints_.size() > level().earlier_complaints;
   if (in_doubt) return nullptr;
   if (present)
-    complaints_.add(entry->first.source(), fmt::format("{}{} is only for {}: remove it", level().path, key, info.only_for));
+    complaints_.add(entry->first.source(), fmt::format("{}{} is only for {}: remove it",
+                                                       level().path, key, info.only_for));
   else if (info.required && info.applies)
     complain(*level().table, key,
-             fmt::format(" is missing; expected here: {}{}{}{}", info.doc, *info.unit ? ", in " : "", info.unit, hint(info)));
+             fmt::format(" is missing; expected here: {}{}{}{}", info.doc,
+                         *info.unit ? ", in " : "", info.unit, hint(info)));
   return nullptr;
 }
 
-bool TomlReader::in_range(const char* key, const toml::node& node, double value, const KeyInfo& info) {
+bool TomlReader::in_range(const char* key, const toml::node& node, double value,
+                          const KeyInfo& info) {
   if (value <= info.max && (info.above_min ? value > info.min : value >= info.min)) return true;
   complain(node, key,
-           fmt::format(" = {} is out of range: expected {}{}", with_unit(fmt::format("{}", value), info), range_text(info), hint(info)));
+           fmt::format(" = {} is out of range: expected {}{}",
+                       with_unit(fmt::format("{}", value), info), range_text(info), hint(info)));
   return false;
 }
 
-bool TomlReader::to_number(const char* key, const toml::node& node, double& value, const KeyInfo& info) {
+bool TomlReader::to_number(const char* key, const toml::node& node, double& value,
+                           const KeyInfo& info) {
   if (!node.is_number()) {
     wrong_type(node, key, *info.unit ? std::string("a number, in ") + info.unit : "a number", info);
     return false;
@@ -96,7 +112,8 @@ bool TomlReader::to_number(const char* key, const toml::node& node, double& valu
   return true;
 }
 
-bool TomlReader::to_integer(const char* key, const toml::node& node, int& value, const KeyInfo& info) {
+bool TomlReader::to_integer(const char* key, const toml::node& node, int& value,
+                            const KeyInfo& info) {
   const auto read = node.value_exact<std::int64_t>();
   if (!read) {
     wrong_type(node, key, "an integer", info);
@@ -110,10 +127,14 @@ bool TomlReader::to_integer(const char* key, const toml::node& node, int& value,
   return true;
 }
 
-bool TomlReader::to_numbers(const char* key, const toml::node& node, std::span<double> values, const KeyInfo& info) {
+bool TomlReader::to_numbers(const char* key, const toml::node& node, std::span<double> values,
+                            const KeyInfo& info) {
   const toml::array* array = node.as_array();
   if (!array || array->size() != values.size()) {
-    wrong_type(node, key, fmt::format("an array of {} numbers{}{}", values.size(), *info.unit ? ", in " : "", info.unit), info);
+    wrong_type(node, key,
+               fmt::format("an array of {} numbers{}{}", values.size(), *info.unit ? ", in " : "",
+                           info.unit),
+               info);
     return false;
   }
   for (std::size_t i = 0; i < values.size(); ++i)
@@ -153,13 +174,17 @@ void TomlReader::file(const char* key, fs::path& value, const KeyInfo& info) {
   text(key, name, info);
   if (name.empty()) {
     const auto given = node ? node->value_exact<std::string>() : std::nullopt;
-    if (info.applies && given && given->empty()) complain(*node, key, ": a file name was expected, the text is empty");
+    if (info.applies && given && given->empty())
+      complain(*node, key, ": a file name was expected, the text is empty");
     return;
   }
   value = (folder_ / name).lexically_normal();
   std::error_code failure;
   if (!fs::exists(value, failure))
-    complain(*node, key, fmt::format(": there is no file '{}'; a relative name starts at the scene file's folder", value.string()));
+    complain(
+        *node, key,
+        fmt::format(": there is no file '{}'; a relative name starts at the scene file's folder",
+                    value.string()));
   else if (!fs::is_regular_file(value, failure))
     complain(*node, key, fmt::format(": '{}' is not a file", value.string()));
 }
@@ -175,14 +200,18 @@ void TomlReader::integers(const char* key, std::vector<Index>& value, const KeyI
   if (!node) return;
   const toml::array* array = node->as_array();
   if (!array || (info.count && array->size() != info.count))
-    return wrong_type(*node, key, info.count ? fmt::format("an array of {} integers", info.count) : "an array of integers", info);
+    return wrong_type(
+        *node, key,
+        info.count ? fmt::format("an array of {} integers", info.count) : "an array of integers",
+        info);
   std::vector<Index> read(array->size());
   for (std::size_t i = 0; i < read.size(); ++i)
     if (!to_integer(key, *array->get(i), read[i], info)) return;
   value = read;
 }
 
-int TomlReader::index_of(const char* key, const toml::node& node, std::span<const char* const> names) {
+int TomlReader::index_of(const char* key, const toml::node& node,
+                         std::span<const char* const> names) {
   const auto word = node.value_exact<std::string>();
   const std::string choices = fmt::format("one of \"{}\"", fmt::join(names, "\", \""));
   if (!word) {
@@ -191,26 +220,33 @@ int TomlReader::index_of(const char* key, const toml::node& node, std::span<cons
   }
   const auto place = std::find(names.begin(), names.end(), *word);
   if (place != names.end()) return static_cast<int>(place - names.begin());
-  complain(node, key, fmt::format(": \"{}\" is not known: expected {}{}", *word, choices, suggestion(*word, strings(names))));
+  complain(node, key,
+           fmt::format(": \"{}\" is not known: expected {}{}", *word, choices,
+                       suggestion(*word, strings(names))));
   return -1;
 }
 
-void TomlReader::choose(const char* key, int& value, std::span<const char* const> names, const KeyInfo& info) {
+void TomlReader::choose(const char* key, int& value, std::span<const char* const> names,
+                        const KeyInfo& info) {
   const toml::node* node = take(key, info);
   const int index = node ? index_of(key, *node, names) : -1;
   if (index >= 0) value = index;
 }
 
-void TomlReader::choose_some(const char* key, std::vector<std::string>& value, std::span<const char* const> names, const KeyInfo& info) {
+void TomlReader::choose_some(const char* key, std::vector<std::string>& value,
+                             std::span<const char* const> names, const KeyInfo& info) {
   const toml::node* node = take(key, info);
   if (!node) return;
   const toml::array* array = node->as_array();
-  if (!array) return wrong_type(*node, key, fmt::format("an array with some of \"{}\"", fmt::join(names, "\", \"")), info);
+  if (!array)
+    return wrong_type(
+        *node, key, fmt::format("an array with some of \"{}\"", fmt::join(names, "\", \"")), info);
   for (const toml::node& entry : *array) {
     const int index = index_of(key, entry, names);
     if (index < 0) return;
     const std::string name = names[static_cast<std::size_t>(index)];
-    if (std::find(value.begin(), value.end(), name) != value.end()) return complain(entry, key, ": \"" + name + "\" stands here twice");
+    if (std::find(value.begin(), value.end(), name) != value.end())
+      return complain(entry, key, ": \"" + name + "\" stands here twice");
     value.push_back(name);
   }
 }

@@ -1,5 +1,6 @@
 #pragma once
-// Fills the fields that describe() names from a TOML document, and complains about everything that does not fit.
+// Fills the fields that describe() names from a TOML document, and complains about everything that
+// does not fit.
 
 #include <toml++/toml.h>
 
@@ -15,7 +16,8 @@ class TomlReader final : public SchemaVisitor {
  public:
   // `home`: advice where a key that is unknown in its table belongs, "" when nowhere.
   using Home = std::function<std::string(const std::string& key)>;
-  TomlReader(const toml::table& document, std::filesystem::path folder, Home home, Complaints& complaints);
+  TomlReader(const toml::table& document, std::filesystem::path folder, Home home,
+             Complaints& complaints);
   // After the walk: complains about the top-level keys that were not described.
   void finish() { complain_of_unknown_keys(); }
 
@@ -27,8 +29,10 @@ class TomlReader final : public SchemaVisitor {
   void vector(const char* key, Vec3& value, const KeyInfo& info) override;
   void rotation(const char* key, Eigen::Quaterniond& value, const KeyInfo& info) override;
   void integers(const char* key, std::vector<Index>& value, const KeyInfo& info) override;
-  void choose(const char* key, int& value, std::span<const char* const> names, const KeyInfo& info) override;
-  void choose_some(const char* key, std::vector<std::string>& value, std::span<const char* const> names, const KeyInfo& info) override;
+  void choose(const char* key, int& value, std::span<const char* const> names,
+              const KeyInfo& info) override;
+  void choose_some(const char* key, std::vector<std::string>& value,
+                   std::span<const char* const> names, const KeyInfo& info) override;
   void table(const char* key, const KeyInfo& info, const std::function<void()>& inside) override;
   bool given(const char* key, bool now) override;
   SourcePlace place_of(const char* key) override;
@@ -50,12 +54,15 @@ class TomlReader final : public SchemaVisitor {
   const toml::node* take(const char* key, const KeyInfo& info);
   bool to_number(const char* key, const toml::node& node, double& value, const KeyInfo& info);
   bool to_integer(const char* key, const toml::node& node, int& value, const KeyInfo& info);
-  bool to_numbers(const char* key, const toml::node& node, std::span<double> values, const KeyInfo& info);
+  bool to_numbers(const char* key, const toml::node& node, std::span<double> values,
+                  const KeyInfo& info);
   bool in_range(const char* key, const toml::node& node, double value, const KeyInfo& info);
   int index_of(const char* key, const toml::node& node, std::span<const char* const> names);
-  void inside_table(const toml::table& table, const std::string& path, const std::function<void()>& inside);
+  void inside_table(const toml::table& table, const std::string& path,
+                    const std::function<void()>& inside);
   void complain(const toml::node& node, const char* key, const std::string& message);
-  void wrong_type(const toml::node& node, const char* key, const std::string& expected, const KeyInfo& info);
+  void wrong_type(const toml::node& node, const char* key, const std::string& expected,
+                  const KeyInfo& info);
   void complain_of_unknown_keys();
 
   std::vector<Level> levels_;

@@ -10,7 +10,8 @@
 
 namespace taut {
 
-void TomlReader::inside_table(const toml::table& table, const std::string& path, const std::function<void()>& inside) {
+void TomlReader::inside_table(const toml::table& table, const std::string& path,
+                              const std::function<void()>& inside) {
   levels_.push_back({&table, path, {}, complaints_.size()});
   inside();
   complain_of_unknown_keys();
@@ -20,9 +21,12 @@ void TomlReader::inside_table(const toml::table& table, const std::string& path,
 void TomlReader::table(const char* key, const KeyInfo& info, const std::function<void()>& inside) {
   const toml::node* node = take(key, info);
   if (!node) return;
-  if (const toml::table* table = node->as_table()) return inside_table(*table, level().path + key + ".", inside);
+  if (const toml::table* table = node->as_table())
+    return inside_table(*table, level().path + key + ".", inside);
   const std::string name = level().path + key;
-  wrong_type(*node, key, node->is_array_of_tables() ? "one table: write [" + name + "], with single brackets" : "a table [" + name + "]",
+  wrong_type(*node, key,
+             node->is_array_of_tables() ? "one table: write [" + name + "], with single brackets"
+                                        : "a table [" + name + "]",
              info);
 }
 
@@ -30,12 +34,16 @@ void TomlReader::tables(const char* key, const TableList& items, const KeyInfo& 
   const toml::node* node = take(key, info);
   if (!node) return;
   const toml::array* array = node->as_array();
-  if (!array) return wrong_type(*node, key, fmt::format("a list of tables: write [[{}]], with double brackets", key), info);
+  if (!array)
+    return wrong_type(
+        *node, key, fmt::format("a list of tables: write [[{}]], with double brackets", key), info);
   items.resize(array->size());
   for (std::size_t i = 0; i < array->size(); ++i) {
     const toml::node& entry = *array->get(i);
-    if (!entry.is_table()) return wrong_type(entry, key, fmt::format("a list of tables ([[{}]])", key), info);
-    inside_table(*entry.as_table(), fmt::format("{}{}.{}.", level().path, key, i), [&] { items.visit(i); });
+    if (!entry.is_table())
+      return wrong_type(entry, key, fmt::format("a list of tables ([[{}]])", key), info);
+    inside_table(*entry.as_table(), fmt::format("{}{}.{}.", level().path, key, i),
+                 [&] { items.visit(i); });
   }
 }
 
@@ -48,7 +56,9 @@ void TomlReader::complain_of_unknown_keys() {
     std::string advice = "; the keys here are " + fmt::format("{}", fmt::join(known, ", "));
     if (!home.empty()) advice = "; " + home;
     if (!near.empty()) advice = "; did you mean '" + near + "'?";
-    const std::string where = level().path.empty() ? "at the top level" : "in " + level().path.substr(0, level().path.size() - 1);
+    const std::string where = level().path.empty()
+                                  ? "at the top level"
+                                  : "in " + level().path.substr(0, level().path.size() - 1);
     complaints_.add(key.source(), "unknown key '" + name + "' " + where + advice);
   }
 }
@@ -65,11 +75,14 @@ void TomlReader::exactly_one(std::span<const char* const> keys) {
   for (const char* key : keys)
     if (level().table->contains(key)) present.emplace_back(key);
   if (present.size() == 1) return;
-  const std::string path = level().path.substr(0, level().path.empty() ? 0 : level().path.size() - 1);
+  const std::string path =
+      level().path.substr(0, level().path.empty() ? 0 : level().path.size() - 1);
   const std::string wanted = fmt::format("{} needs exactly one of {}", path, fmt::join(keys, ", "));
-  if (present.empty()) return complaints_.add(level().table->source(), wanted + ", it has none: add one");
-  complaints_.add(level().table->find(std::string_view(present.back()))->first.source(),
-                  fmt::format("{}, it has {}: remove all but one", wanted, fmt::join(present, " and ")));
+  if (present.empty())
+    return complaints_.add(level().table->source(), wanted + ", it has none: add one");
+  complaints_.add(
+      level().table->find(std::string_view(present.back()))->first.source(),
+      fmt::format("{}, it has {}: remove all but one", wanted, fmt::join(present, " and ")));
 }
 
 void TomlReader::check(bool holds, const char* key, const std::string& message) {
@@ -88,19 +101,29 @@ void TomlReader::rotation(const char* key, Eigen::Quaterniond& value, const KeyI
   inside_table(*node->as_table(), level().path + key + ".", [&] {
     if (as_quaternion) {
       double q[4] = {1, 0, 0, 0};
-      if (const toml::node* entries = take("quaternion", always); !to_numbers("quaternion", *entries, q, always)) return;
+      if (const toml::node* entries = take("quaternion", always);
+          !to_numbers("quaternion", *entries, q, always))
+        return;
       const double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-      check(std::abs(length - 1) < 1e-6, "quaternion", fmt::format("length {} found, 1 expected (w, x, y, z)", length));
+      check(std::abs(length - 1) < 1e-6, "quaternion",
+            fmt::format("length {} found, 1 expected (w, x, y, z)", length));
       value = Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
-      // A written quaternion must come back to the last bit, so rounding in its length is left alone.
+      // A written quaternion must come back to the last bit, so rounding in its length is left
+      // alone.
       if (std::abs(length - 1) > 1e-14) value.coeffs() /= length;
       return;
     }
     Vec3 axis = Vec3::UnitZ();
     double degrees = 0.0;
     vector("axis", axis, {.doc = "the direction to turn about", .required = true});
-    number("degrees", degrees, {.doc = "the angle, right-handed", .unit = "degrees", .min = -36000, .max = 36000, .required = true});
-    check(axis.norm() > 0, "axis", "a direction was expected, the axis is zero; [0, 0, 1] turns about the vertical");
+    number("degrees", degrees,
+           {.doc = "the angle, right-handed",
+            .unit = "degrees",
+            .min = -36000,
+            .max = 36000,
+            .required = true});
+    check(axis.norm() > 0, "axis",
+          "a direction was expected, the axis is zero; [0, 0, 1] turns about the vertical");
     if (axis.norm() > 0) value = rotation_about(axis, degrees);
   });
 }

@@ -21,7 +21,8 @@ std::string joined(const Items& items, Write&& write) {
 
 bool same_bits(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b) {
   for (int i = 0; i < 4; ++i)
-    if (std::bit_cast<std::uint64_t>(a.coeffs()[i]) != std::bit_cast<std::uint64_t>(b.coeffs()[i])) return false;
+    if (std::bit_cast<std::uint64_t>(a.coeffs()[i]) != std::bit_cast<std::uint64_t>(b.coeffs()[i]))
+      return false;
   return true;
 }
 
@@ -65,15 +66,18 @@ std::string to_toml(const Eigen::Quaterniond& rotation) {
   const Vec3 axis = length > 0 ? Vec3(rotation.vec() / length) : Vec3::UnitZ();
   const double degrees = 2 * std::atan2(length, rotation.w()) * (180 / std::numbers::pi);
   const Vec3 round_axis = axis.unaryExpr(&few_digits);
-  const std::pair<Vec3, double> candidates[] = {{round_axis, few_digits(degrees)}, {axis, few_digits(degrees)}, {axis, degrees}};
+  const std::pair<Vec3, double> candidates[] = {
+      {round_axis, few_digits(degrees)}, {axis, few_digits(degrees)}, {axis, degrees}};
   for (const auto& [a, angle] : candidates)
-    if (same_bits(rotation_about(a, angle), rotation)) return fmt::format("{{ axis = {}, degrees = {} }}", to_toml(a), to_toml(angle));
+    if (same_bits(rotation_about(a, angle), rotation))
+      return fmt::format("{{ axis = {}, degrees = {} }}", to_toml(a), to_toml(angle));
   const std::vector<double> entries{rotation.w(), rotation.x(), rotation.y(), rotation.z()};
   return "{ quaternion = " + joined(entries, [](double x) { return to_toml(x); }) + " }";
 }
 
 Eigen::Quaterniond rotation_about(const Vec3& axis, double degrees) {
-  return Eigen::Quaterniond(Eigen::AngleAxisd(degrees * (std::numbers::pi / 180), axis / axis.norm()));
+  return Eigen::Quaterniond(
+      Eigen::AngleAxisd(degrees * (std::numbers::pi / 180), axis / axis.norm()));
 }
 
 }  // namespace taut

@@ -14,7 +14,8 @@ std::string to_toml(const std::string& value);
 std::string to_toml(const Vec3& value);
 std::string to_toml(std::span<const Index> values);
 std::string to_toml(std::span<const std::string> values);
-// { axis = [...], degrees = ... } where that gives the same bits, else { quaternion = [w, x, y, z] }.
+// { axis = [...], degrees = ... } where that gives the same bits, else { quaternion = [w, x, y, z]
+// }.
 std::string to_toml(const Eigen::Quaterniond& rotation);
 
 // The rotation by `degrees` about `axis` (any length > 0), right-handed.

@@ -21,7 +21,8 @@ void turn_and_scale(std::vector<Vec3>& positions, const Solid& solid) {
   }
 }
 
-std::filesystem::path found(const std::filesystem::path& path, const std::filesystem::path& folder) {
+std::filesystem::path found(const std::filesystem::path& path,
+                            const std::filesystem::path& folder) {
   return path.is_absolute() ? path : folder / path;
 }
 
@@ -31,7 +32,9 @@ MeshSolid::MeshSolid(const Solid& solid, const std::filesystem::path& folder)
     : solid_(solid), mesh_(read_mesh(found(solid.mesh, folder), solid.prim)) {
   const MeshFaults faults = find_faults(mesh_);
   for (const Index triangle : faults.repeated_vertex)
-    throw InputError({found(solid.mesh, folder).string()}, "triangle " + std::to_string(triangle + 1) + " names a vertex twice; remove it");
+    throw InputError(
+        {found(solid.mesh, folder).string()},
+        "triangle " + std::to_string(triangle + 1) + " names a vertex twice; remove it");
   mesh_sum_ = sum_of(mesh_);
   turn_and_scale(mesh_.positions, solid_);
   if (!solid_.motion.empty()) samples_ = read_motion(found(solid_.motion, folder), vertices());
@@ -45,7 +48,8 @@ MeshSolid::MeshSolid(const Solid& solid, const std::filesystem::path& folder)
 
 Vec3 MeshSolid::local(std::size_t vertex, double time) const {
   if (samples_.empty()) return mesh_.positions[vertex];
-  const double place = std::clamp(time * solid_.motion_rate, 0.0, static_cast<double>(samples_.size() - 1));
+  const double place =
+      std::clamp(time * solid_.motion_rate, 0.0, static_cast<double>(samples_.size() - 1));
   const std::size_t before = std::min(static_cast<std::size_t>(place), samples_.size() - 1),
                     after = std::min(before + 1, samples_.size() - 1);
   const double share = place - static_cast<double>(before);

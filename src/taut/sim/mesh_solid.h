@@ -1,9 +1,10 @@
 #pragma once
-// A solid given by a triangle mesh, closed or open: still, moving rigidly with its pose, or deforming with a sequence of positions.
+// A solid given by a triangle mesh, closed or open: still, moving rigidly with its pose, or
+// deforming with a sequence of positions.
 //
 //   x_world(t) = pose(t) * shape(t)
-//   shape(t)   the mesh's vertices, scaled and turned to Taut's z; or of a motion with samples s_0, s_1, ... at `rate` a second:
-//              linear in between, s_0 before time 0, the last one held
+//   shape(t)   the mesh's vertices, scaled and turned to Taut's z; or of a motion with samples s_0,
+//              s_1, ... at `rate` a second: linear in between, s_0 before time 0, the last one held
 
 #include "taut/contact/solid.h"
 #include "taut/mesh/triangle_mesh.h"
@@ -12,7 +13,8 @@ namespace taut {
 
 class MeshSolid {
  public:
-  // Reads the files. Throws InputError as read_mesh and read_motion, and for a triangle that names a vertex twice.
+  // Reads the files. Throws InputError as read_mesh and read_motion, and for a triangle that names
+  // a vertex twice.
   MeshSolid(const Solid& solid, const std::filesystem::path& folder);
 
   const Solid& solid() const { return solid_; }

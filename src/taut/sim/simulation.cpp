@@ -23,7 +23,8 @@ SolverOptions fallback_options(const SolverOptions& options) {
 
 SolidContact make_solid_contact(const Scene& scene, const ClothModel& cloth) {
   SolidVariants variants = solid_variants(scene, cloth);
-  return SolidContact(std::move(variants.solids), cloth.nodes(), scene.contact, std::move(variants.meets));
+  return SolidContact(std::move(variants.solids), cloth.nodes(), scene.contact,
+                      std::move(variants.meets));
 }
 
 }  // namespace
@@ -32,8 +33,11 @@ Simulation::Simulation(Scene scene)
     : scene_(std::move(scene)),
       cloth_(scene_),
       contact_(make_solid_contact(scene_, cloth_)),
-      surface_contact_(SurfaceContact::wanted(scene_) ? std::make_unique<SurfaceContact>(scene_, cloth_) : nullptr),
-      stepper_(cloth_.nodes(), cloth_.force_models(), cloth_.external(), scene_.time.integrator, scene_.solver, scene_.time.newton),
+      surface_contact_(SurfaceContact::wanted(scene_)
+                           ? std::make_unique<SurfaceContact>(scene_, cloth_)
+                           : nullptr),
+      stepper_(cloth_.nodes(), cloth_.force_models(), cloth_.external(), scene_.time.integrator,
+               scene_.solver, scene_.time.newton),
       state_(cloth_.start()) {
   // Halved steps keep the core of whole ones, and its symbolic work.
   stepper_.choose_core(scene_.time.step);
@@ -45,19 +49,22 @@ WorstStretch Simulation::worst_stretch() const {
   for (const SpringModel* model : cloth_.stretch_springs()) {
     const std::vector<double> strains = spring_strains(*model, state_.x);
     for (std::size_t s = 0; s < strains.size(); ++s)
-      if (!where || strains[s] > worst.stretch) worst.stretch = strains[s], where = &model->springs()[s];
+      if (!where || strains[s] > worst.stretch)
+        worst.stretch = strains[s], where = &model->springs()[s];
   }
   if (!where) return worst;
   for (const ClothPart& part : cloth_.parts())
     if (where->i >= part.first_node && where->i < part.first_node + part.node_count)
-      worst.cloth = part.name, worst.i = where->i - part.first_node, worst.j = where->j - part.first_node;
+      worst.cloth = part.name, worst.i = where->i - part.first_node,
+      worst.j = where->j - part.first_node;
   return worst;
 }
 
 std::vector<InputFile> Simulation::input_files() const {
   std::vector<InputFile> files;
   for (std::size_t c = 0; c < scene_.cloths.size(); ++c)
-    if (scene_.cloths[c].from_file) files.push_back({scene_.cloths[c].mesh, cloth_.parts()[c].file_sum});
+    if (scene_.cloths[c].from_file)
+      files.push_back({scene_.cloths[c].mesh, cloth_.parts()[c].file_sum});
   if (!surface_contact_) return files;
   for (const MeshSolid& solid : surface_contact_->solids()) {
     files.push_back({solid.solid().mesh, solid.mesh_sum()});
@@ -66,8 +73,8 @@ std::vector<InputFile> Simulation::input_files() const {
   return files;
 }
 
-void Simulation::restore(State state, ContactState contacts, int steps, std::span<const double> solver_memory,
-                         ClothContactState surface_contact) {
+void Simulation::restore(State state, ContactState contacts, int steps,
+                         std::span<const double> solver_memory, ClothContactState surface_contact) {
   stepper_.solver().restore_memory(solver_memory);
   state_ = std::move(state);
   contact_.restore(std::move(contacts));
@@ -79,10 +86,12 @@ Status Simulation::step(StepRecord& record) {
   Timer timer;
   record = {};
   record.step = steps_ + 1;
-  // Counted, not summed up: a thousand additions of h would drift from the times that key frames are given at.
+  // Counted, not summed up: a thousand additions of h would drift from the times that key frames
+  // are given at.
   state_.time = steps_ * scene_.time.step;
   if (Status status = advance(scene_.time.step, 0, record); !status.ok()) {
-    status.message = fmt::format("step {} (t = {:.6g} s): {}", record.step, state_.time, status.message);
+    status.message =
+        fmt::format("step {} (t = {:.6g} s): {}", record.step, state_.time, status.message);
     return status;
   }
   state_.time = ++steps_ * scene_.time.step;
@@ -101,7 +110,8 @@ Status Simulation::advance(double h, int halvings, StepRecord& record) {
   const bool overshot = status.ok() && beyond > scene_.time.overshoot_limit;
   if (may_halve && (!status.ok() || overshot)) return advance_halves(h, halvings, record);
   // Without halving, as in the paper, it is the user's choice to accept what comes.
-  if (overshot && scene_.time.max_halvings > 0) record.overshoot = std::max(record.overshoot, beyond);
+  if (overshot && scene_.time.max_halvings > 0)
+    record.overshoot = std::max(record.overshoot, beyond);
   if (status.ok()) status = accept(h, record);
   return status.ok() || !may_halve ? status : advance_halves(h, halvings, record);
 }
@@ -110,7 +120,8 @@ Status Simulation::advance_halves(double h, int halvings, StepRecord& record) {
   ++record.retries;
   const State state = state_;
   const ContactState contacts = contact_.state();
-  const ClothContactState surface_contact = surface_contact_ ? surface_contact_->state() : ClothContactState{};
+  const ClothContactState surface_contact =
+      surface_contact_ ? surface_contact_->state() : ClothContactState{};
   Status status;
   for (int half = 0; half < 2 && status.ok(); ++half) {
     stepper_.start_afresh(state_);
@@ -122,13 +133,15 @@ Status Simulation::advance_halves(double h, int halvings, StepRecord& record) {
     state_ = state;
     contact_.restore(contacts);
     if (surface_contact_) surface_contact_->restore(surface_contact);
-    if (halvings + 1 == scene_.time.max_halvings) status.message += fmt::format(" (also with steps of {:.3g} s)", h / 2);
+    if (halvings + 1 == scene_.time.max_halvings)
+      status.message += fmt::format(" (also with steps of {:.3g} s)", h / 2);
   }
   return status;
 }
 
 double Simulation::largest_overshoot() const {
-  if (stepper_.integrator().is_nonlinear()) return 0.0;  // it has iterated until the forces at the end agree
+  // it has iterated until the forces at the end agree
+  if (stepper_.integrator().is_nonlinear()) return 0.0;
   double largest = 0.0;
   for (const SpringModel* model : cloth_.stretch_springs())
     largest = std::max(largest, taut::largest_overshoot(*model, state_.x, stepper_.x_end()));
@@ -150,13 +163,16 @@ Status Simulation::try_step(double h, bool may_halve, double& overshoot, StepRec
   return solve_passes(may_halve, overshoot, record);
 }
 
-Status Simulation::correct(double h, std::vector<Vec3>& corrected, bool& changed, StepRecord& record) {
+Status Simulation::correct(double h, std::vector<Vec3>& corrected, bool& changed,
+                           StepRecord& record) {
   changed = contact_.move_out(corrected) > 0;
   if (!surface_contact_) return {};
   std::vector<Vec3> v_end(stepper_.v_end().begin(), stepper_.v_end().end());
   if (changed)
-    for (std::size_t i = 0; i < v_end.size(); ++i) v_end[i] += (corrected[i] - stepper_.x_end()[i]) / h;
-  Status status = surface_contact_->correct(state_.time, h, state_.x, v_end, pins_, contact_, corrected, changed);
+    for (std::size_t i = 0; i < v_end.size(); ++i)
+      v_end[i] += (corrected[i] - stepper_.x_end()[i]) / h;
+  Status status = surface_contact_->correct(state_.time, h, state_.x, v_end, pins_, contact_,
+                                            corrected, changed);
   note_surface_contact(record);
   return status;
 }
@@ -172,7 +188,8 @@ Status Simulation::accept(double h, StepRecord& record) {
   if (surface_contact_) surface_contact_->keep();
   record.contact_moved += contact_.counts().moved;
   record.deepest_m = std::max(record.deepest_m, contact_.deepest());
-  record.contacts = contact_.contacts() + (surface_contact_ ? surface_contact_->counts().pushing : 0);
+  record.contacts =
+      contact_.contacts() + (surface_contact_ ? surface_contact_->counts().pushing : 0);
   stepper_.commit(state_);
   if (changed) stepper_.correct(state_, corrected, h);
   return {};
@@ -197,11 +214,13 @@ void Simulation::look_for_intersections(StepRecord& record) {
   const int every = scene_.contact.check_every;
   if (!surface_contact_ || every == 0 || steps_ % every != 0) return;
   Timer timer;
-  record.intersections = static_cast<int>(surface_contact_->intersections(state_.time, state_.x).size());
+  record.intersections =
+      static_cast<int>(surface_contact_->intersections(state_.time, state_.x).size());
   record.check_ms = timer.milliseconds();
 }
 
-// Where the step may be halved, it ends with the first pass that overshoots: the others would be solved for nothing.
+// Where the step may be halved, it ends with the first pass that overshoots: the others would be
+// solved for nothing.
 Status Simulation::solve_passes(bool may_halve, double& overshoot, StepRecord& record) {
   SolveSummary summary;
   for (bool again = true; again;) {
@@ -217,7 +236,8 @@ Status Simulation::solve_passes(bool may_halve, double& overshoot, StepRecord& r
     if (!summary.status.ok()) return summary.status;
     overshoot = largest_overshoot();
     contact_timer.lap();
-    again = !(may_halve && overshoot > scene_.time.overshoot_limit) && contact_.update(stepper_.x_end(), stepper_.constraint_impulse());
+    again = !(may_halve && overshoot > scene_.time.overshoot_limit) &&
+            contact_.update(stepper_.x_end(), stepper_.constraint_impulse());
     record.contact_ms += contact_timer.milliseconds();
   }
   record.dof = constraints_.free_dofs();
@@ -234,7 +254,8 @@ SolveSummary Simulation::solve_or_fall_back(StepRecord& record) {
   ++record.fallbacks;
   summary = stepper_.solve(constraints_, contact_.impulses(), *fallback_);
   if (!summary.status.ok())
-    summary.status.message = fmt::format("{}: {}; then {}: {}", scene_.solver.name, reason, summary.solver, summary.status.message);
+    summary.status.message = fmt::format("{}: {}; then {}: {}", scene_.solver.name, reason,
+                                         summary.solver, summary.status.message);
   return summary;
 }
 
@@ -242,14 +263,17 @@ void Simulation::note_solve(const SolveSummary& summary, StepRecord& record) con
   record.solver = summary.method;
   record.newton_iterations += stepper_.newton_iterations();
   record.fallbacks += summary.fallbacks;
-  if (record.contact_passes == 0 || summary.precision == std::string_view("double")) record.precision = summary.precision;
+  if (record.contact_passes == 0 || summary.precision == std::string_view("double"))
+    record.precision = summary.precision;
   record.iterations = std::max(record.iterations, summary.iterations);
   record.relative_residual = std::max(record.relative_residual, summary.relative_residual);
   record.order_ms += summary.order_ms;
   record.factor_ms += summary.factor_ms;
   record.solve_ms += summary.solve_ms + summary.reduce_ms;
-  if (summary.method.starts_with("core_")) record.core_springs = stepper_.core_springs(summary.core);
-  // `auto` may change its method between passes: iterations of one without a bound are not to be held against another's.
+  if (summary.method.starts_with("core_"))
+    record.core_springs = stepper_.core_springs(summary.core);
+  // `auto` may change its method between passes: iterations of one without a bound are not to be
+  // held against another's.
   const int bound = summary.bound_iterations;
   const bool bounded = bound >= 0 && (record.contact_passes == 0 || record.bound_iterations >= 0);
   record.bound_iterations = bounded ? std::max(record.bound_iterations, bound) : -1;

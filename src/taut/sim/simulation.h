@@ -1,14 +1,17 @@
 #pragma once
 // A scene in motion: the loop that joins contact and the step.
 //
-//   step():  pins, zones and contact give constraints -> assemble -> [solve -> contact judges the constraint forces] until the contacts
+//   step():  pins, zones and contact give constraints -> assemble -> [solve -> contact judges the
+//            constraint forces] until the contacts
 //   agree -> cloth is kept from passing through cloth (sim/surface_contact.h) -> commit
 //
-// A solve that fails is repeated by a direct method (counted in `fallbacks`, named in the record). If that fails too, or a stretch spring
-// overshoots by more than TimeOptions::overshoot_limit (element/overshoot.h), the step is redone as two of half the length, and each of them
-// likewise, down to h / 2^max_halvings (counted in `retries`). So it is if cloth cannot be kept from passing through itself. What
-// overshoots there is accepted (StepRecord::overshoot says so); what cannot be solved or kept apart there makes step() return a bad status
-// with the step and time in its message, and the state stays that of the step before.
+// A solve that fails is repeated by a direct method (counted in `fallbacks`, named in the record).
+// If that fails too, or a stretch spring overshoots by more than TimeOptions::overshoot_limit
+// (element/overshoot.h), the step is redone as two of half the length, and each of them likewise,
+// down to h / 2^max_halvings (counted in `retries`). So it is if cloth cannot be kept from passing
+// through itself. What overshoots there is accepted (StepRecord::overshoot says so); what cannot be
+// solved or kept apart there makes step() return a bad status with the step and time in its
+// message, and the state stays that of the step before.
 
 #include <functional>
 
@@ -19,7 +22,8 @@
 
 namespace taut {
 
-// One row of stats.csv. Times in ms; of several contact passes, times are sums and the solver's numbers are the largest.
+// One row of stats.csv. Times in ms; of several contact passes, times are sums and the solver's
+// numbers are the largest.
 struct StepRecord {
   int step = 0;
   double time = 0.0;  // s, at the end of the step
@@ -29,7 +33,8 @@ struct StepRecord {
   Index core_springs = 0;  // 0 when the solver has no core
   int iterations = 0;
   double relative_residual = 0.0;
-  double assemble_ms = 0.0, order_ms = 0.0, factor_ms = 0.0, solve_ms = 0.0, contact_ms = 0.0, step_ms = 0.0;
+  double assemble_ms = 0.0, order_ms = 0.0, factor_ms = 0.0, solve_ms = 0.0, contact_ms = 0.0,
+         step_ms = 0.0;
   double kinetic_J = 0.0, elastic_J = 0.0;
   double max_stretch = 0.0;   // largest L/L0 - 1 of all stretch springs
   int bound_iterations = -1;  // -1: the solver, of several passes one of them, has no bound
@@ -38,11 +43,14 @@ struct StepRecord {
   Index collapsed_springs = 0;
   int contact_passes = 0;
   int newton_iterations = 0;  // linear solves beyond one a pass; nonlinear integrators
-  double overshoot = 0.0;     // the largest that was accepted after the last halving, share of a rest length; 0: none
-  int retries = 0;            // times that the step, or a part of it, was redone with half the length
-  int contact_moved = 0;      // nodes moved out of solids after the last pass
-  double deepest_m = 0.0;     // how deep the deepest of them was
-  // Cloth with cloth and mesh solids (contact/cloth_contact.h); of a step in parts, sums, of zones the largest.
+  // the largest that was accepted after the last halving, share of a rest length; 0: none
+  double overshoot = 0.0;
+  // times that the step, or a part of it, was redone with half the length
+  int retries = 0;
+  int contact_moved = 0;   // nodes moved out of solids after the last pass
+  double deepest_m = 0.0;  // how deep the deepest of them was
+  // Cloth with cloth and mesh solids (contact/cloth_contact.h); of a step in parts, sums, of zones
+  // the largest.
   Offset pairs_tested = 0;
   int near_pairs = 0, pushing_pairs = 0, impacts = 0, zones = 0, zone_nodes = 0, largest_zone = 0;
   double near_ms = 0.0, impulse_ms = 0.0, detect_ms = 0.0, zone_ms = 0.0, check_ms = 0.0;
@@ -86,10 +94,11 @@ class Simulation {
   const SurfaceContact* surface_contact() const { return surface_contact_.get(); }
 
   // Goes on from a checkpoint.
-  void restore(State state, ContactState contacts, int steps, std::span<const double> solver_memory = {},
-               ClothContactState surface_contact = {});
-  // Called after the last pass of a step, before it is committed: the solved system is in stepper().system(). For dumps and benches.
-  // A step that is then redone in halves calls it once, for the whole.
+  void restore(State state, ContactState contacts, int steps,
+               std::span<const double> solver_memory = {}, ClothContactState surface_contact = {});
+  // Called after the last pass of a step, before it is committed: the solved system is in
+  // stepper().system(). For dumps and benches. A step that is then redone in halves calls it once,
+  // for the whole.
   std::function<void(Simulation&, const SolveSummary&)> on_solved;
 
  private:

@@ -13,27 +13,33 @@ namespace {
 CollisionSurface surface_of(const ClothModel& cloth, const std::vector<MeshSolid>& solids) {
   std::vector<std::vector<Triangle>> own;
   for (const ClothPart& part : cloth.parts()) {
-    const auto all = std::span(cloth.surface().triangles).subspan(part.first_triangle, part.triangle_count);
+    const auto all =
+        std::span(cloth.surface().triangles).subspan(part.first_triangle, part.triangle_count);
     std::vector<Triangle>& triangles = own.emplace_back(all.begin(), all.end());
     for (Triangle& t : triangles)
       for (Index& node : t) node -= part.first_node;
   }
   std::vector<SurfacePart> parts;
-  for (std::size_t c = 0; c < own.size(); ++c) parts.push_back({cloth.parts()[c].node_count, own[c], false});
-  for (const MeshSolid& solid : solids) parts.push_back({solid.vertices(), solid.triangles(), true});
+  for (std::size_t c = 0; c < own.size(); ++c)
+    parts.push_back({cloth.parts()[c].node_count, own[c], false});
+  for (const MeshSolid& solid : solids)
+    parts.push_back({solid.vertices(), solid.triangles(), true});
   return join_surfaces(parts);
 }
 
-std::vector<CollisionBody> bodies_of(const ClothModel& cloth, const std::vector<MeshSolid>& solids) {
+std::vector<CollisionBody> bodies_of(const ClothModel& cloth,
+                                     const std::vector<MeshSolid>& solids) {
   std::vector<CollisionBody> bodies;
   for (const ClothPart& part : cloth.parts()) bodies.push_back({part.name});
-  for (const MeshSolid& solid : solids) bodies.push_back({solid.solid().name, true, solid.solid().thickness, solid.solid().friction});
+  for (const MeshSolid& solid : solids)
+    bodies.push_back({solid.solid().name, true, solid.solid().thickness, solid.solid().friction});
   return bodies;
 }
 
 }  // namespace
 
-SurfaceContact::SurfaceContact(const Scene& scene, ClothModel& cloth) : gravity_(scene.gravity), nodes_(cloth.nodes()) {
+SurfaceContact::SurfaceContact(const Scene& scene, ClothModel& cloth)
+    : gravity_(scene.gravity), nodes_(cloth.nodes()) {
   for (const Solid& solid : scene.solids)
     if (solid.shape == SolidShape::mesh) solids_.emplace_back(solid, scene.folder);
   CollisionSurface surface = surface_of(cloth, solids_);
@@ -45,7 +51,8 @@ SurfaceContact::SurfaceContact(const Scene& scene, ClothModel& cloth) : gravity_
   const auto masses = cloth.external().masses();
   mass_.assign(masses.begin(), masses.end());
   mass_.resize(start.size(), 0.0);
-  contact_ = std::make_unique<ClothContact>(std::move(surface), bodies_of(cloth, solids_), start, mass_, options);
+  contact_ = std::make_unique<ClothContact>(std::move(surface), bodies_of(cloth, solids_), start,
+                                            mass_, options);
   inverse_mass_.resize(mass_.size(), 0.0);
   held_.resize(mass_.size(), 1);
   if (options.untangle) untangle_start(scene, cloth);
@@ -53,7 +60,9 @@ SurfaceContact::SurfaceContact(const Scene& scene, ClothModel& cloth) : gravity_
 }
 
 bool SurfaceContact::wanted(const Scene& scene) {
-  return scene.contact.self || std::ranges::any_of(scene.solids, [](const Solid& s) { return s.shape == SolidShape::mesh; });
+  return scene.contact.self || std::ranges::any_of(scene.solids, [](const Solid& s) {
+           return s.shape == SolidShape::mesh;
+         });
 }
 
 void SurfaceContact::place_solids(double time, std::vector<Vec3>& x) const {
@@ -68,7 +77,8 @@ void SurfaceContact::place_solids(double time, std::vector<Vec3>& x) const {
 std::string SurfaceContact::places(std::span<const Intersection> found) const {
   constexpr std::size_t most_named = 5;
   std::string text;
-  for (std::size_t k = 0; k < std::min(found.size(), most_named); ++k) text += "\n  " + describe(found[k]);
+  for (std::size_t k = 0; k < std::min(found.size(), most_named); ++k)
+    text += "\n  " + describe(found[k]);
   if (found.size() > most_named) text += fmt::format("\n  and {} more", found.size() - most_named);
   return text;
 }
@@ -77,7 +87,8 @@ void SurfaceContact::refuse_intersections(std::span<const Vec3> start) {
   const std::vector<Intersection> found = intersections(0.0, start);
   if (found.empty()) return;
   throw InputError(fmt::format(
-      "cloth intersects at the start, at {} places:{}\nMove them apart, let --untangle (contact.untangle = true) do it, or start as "
+      "cloth intersects at the start, at {} places:{}\nMove them apart, let --untangle "
+      "(contact.untangle = true) do it, or start as "
       "it is with contact.allow_intersections = true; what has passed through may then stay so",
       found.size(), places(found)));
 }
@@ -98,7 +109,8 @@ void SurfaceContact::weigh_nodes(const ConstraintSet& pins) {
   }
 }
 
-Status SurfaceContact::correct(double t, double h, std::span<const Vec3> x0, std::span<const Vec3> v_end, const ConstraintSet& pins,
+Status SurfaceContact::correct(double t, double h, std::span<const Vec3> x0,
+                               std::span<const Vec3> v_end, const ConstraintSet& pins,
                                const SolidContact& solids, std::span<Vec3> x_end, bool& changed) {
   weigh_nodes(pins);
   x0_.assign(x0.begin(), x0.end());
@@ -108,7 +120,8 @@ Status SurfaceContact::correct(double t, double h, std::span<const Vec3> x0, std
   place_solids(t + h, x1_);
   lever_ = x0_;
   for (Index i = 0; i < nodes_; ++i) lever_[i] = x_end[i] - h * v_end[i];
-  const Status status = contact_->resolve({x0_, lever_, inverse_mass_, held_, &solids, h, kept_.forces}, x1_);
+  const Status status =
+      contact_->resolve({x0_, lever_, inverse_mass_, held_, &solids, h, kept_.forces}, x1_);
   if (!status.ok()) return status;
   for (Index i = 0; i < nodes_; ++i) {
     if (x1_[i] == x_end[i]) continue;
@@ -134,12 +147,18 @@ void SurfaceContact::restore(ClothContactState state) {
   const bool ordered = std::ranges::is_sorted(zones.node, std::ranges::less_equal{});
   const bool inside = zones.node.empty() || (zones.node.front() >= 0 && zones.node.back() < nodes_);
   if (!ordered || !inside || zones.rides.size() != zones.node.size())
-    throw InputError(fmt::format("zones: expected ascending nodes below {}: the checkpoint belongs to another scene", nodes_));
+    throw InputError(fmt::format(
+        "zones: expected ascending nodes below {}: the checkpoint belongs to another scene",
+        nodes_));
   const auto is_vertex = [&](Index v) { return v >= 0 && v < std::ssize(mass_); };
   const auto first_of = [](const PairForce& entry) { return entry.node[0]; };
-  if (!std::ranges::all_of(state.forces, [&](const PairForce& entry) { return std::ranges::all_of(entry.node, is_vertex); }) ||
+  if (!std::ranges::all_of(
+          state.forces,
+          [&](const PairForce& entry) { return std::ranges::all_of(entry.node, is_vertex); }) ||
       !std::ranges::is_sorted(state.forces, {}, first_of))
-    throw InputError(fmt::format("forces: expected ascending vertices below {}: the checkpoint belongs to another scene", mass_.size()));
+    throw InputError(fmt::format(
+        "forces: expected ascending vertices below {}: the checkpoint belongs to another scene",
+        mass_.size()));
   kept_ = std::move(state);
 }
 
@@ -163,9 +182,12 @@ std::string SurfaceContact::describe(const Intersection& intersection) const {
     const CollisionBody& body = contact_->bodies()[surface.body[vertex]];
     return fmt::format("{} '{}'", body.is_solid ? "solid" : "cloth", body.name);
   };
-  const auto first = [&](Index vertex) { return std::ranges::lower_bound(surface.body, surface.body[vertex]) - surface.body.begin(); };
-  return fmt::format("the edge between nodes {} and {} of {} and the triangle {}, {}, {} of {}", edge[0] - first(edge[0]),
-                     edge[1] - first(edge[1]), name(edge[0]), triangle[0] - first(triangle[0]), triangle[1] - first(triangle[0]),
+  const auto first = [&](Index vertex) {
+    return std::ranges::lower_bound(surface.body, surface.body[vertex]) - surface.body.begin();
+  };
+  return fmt::format("the edge between nodes {} and {} of {} and the triangle {}, {}, {} of {}",
+                     edge[0] - first(edge[0]), edge[1] - first(edge[1]), name(edge[0]),
+                     triangle[0] - first(triangle[0]), triangle[1] - first(triangle[0]),
                      triangle[2] - first(triangle[0]), name(triangle[0]));
 }
 

@@ -1,8 +1,9 @@
 #pragma once
-// Joins contact/cloth_contact.h to the loop: builds the surface of all cloths and mesh solids, says what each node may do in a step, and
-// keeps zones from one step to the next.
+// Joins contact/cloth_contact.h to the loop: builds the surface of all cloths and mesh solids, says
+// what each node may do in a step, and keeps zones from one step to the next.
 //
-//   before the solve   hold_zones: nodes that were in a rigid zone go on with their rigid velocity as ndof 0 and are eliminated, for one
+//   before the solve   hold_zones: nodes that were in a rigid zone go on with their rigid velocity
+//                      as ndof 0 and are eliminated, for one
 //   step;
 //                      then they are free again, unless they collide again later
 //   after it           correct: the end positions without a collision, or why not
@@ -22,18 +23,21 @@ namespace taut {
 
 class SurfaceContact {
  public:
-  // Reads the solids' meshes. Throws InputError as MeshSolid, and when cloth intersects itself or a solid at the start and the scene does
-  // not allow it. With contact.untangle it is drawn apart, and gets other start positions; throws when that cannot be done.
+  // Reads the solids' meshes. Throws InputError as MeshSolid, and when cloth intersects itself or a
+  // solid at the start and the scene does not allow it. With contact.untangle it is drawn apart,
+  // and gets other start positions; throws when that cannot be done.
   SurfaceContact(const Scene& scene, ClothModel& cloth);
   // Whether the scene needs it: contact.self, or a solid that is a mesh.
   static bool wanted(const Scene& scene);
 
   void hold_zones(const State& state, double h, ConstraintSet& constraints) const;
 
-  // The step [t, t + h] from x0 to x_end with v_end. pins: what holds nodes whatever happens. x_end is changed; true
-  // in `changed` if any node was moved, for which v_end must then change by as much over h.
-  Status correct(double t, double h, std::span<const Vec3> x0, std::span<const Vec3> v_end, const ConstraintSet& pins,
-                 const SolidContact& solids, std::span<Vec3> x_end, bool& changed);
+  // The step [t, t + h] from x0 to x_end with v_end. pins: what holds nodes whatever happens. x_end
+  // is changed; true in `changed` if any node was moved, for which v_end must then change by as
+  // much over h.
+  Status correct(double t, double h, std::span<const Vec3> x0, std::span<const Vec3> v_end,
+                 const ConstraintSet& pins, const SolidContact& solids, std::span<Vec3> x_end,
+                 bool& changed);
   // The corrected step counts: its zones are held in the next, whose pairs begin with its forces.
   void keep();
 

@@ -12,13 +12,16 @@ namespace taut {
 
 namespace {
 
-// Of each edge of the surface: that of the spring along it, where there is one, else what it is at x. m.
-std::vector<double> rest_lengths(const CollisionSurface& surface, const ClothModel& cloth, std::span<const Vec3> x) {
+// Of each edge of the surface: that of the spring along it, where there is one, else what it is at
+// x. m.
+std::vector<double> rest_lengths(const CollisionSurface& surface, const ClothModel& cloth,
+                                 std::span<const Vec3> x) {
   std::map<EdgeVertices, double> of_springs;
   for (const auto& model : cloth.springs()) {
     if (model->force_class() == ForceClass::bend) continue;
     for (const Spring& spring : model->springs())
-      of_springs.emplace(EdgeVertices{std::min(spring.i, spring.j), std::max(spring.i, spring.j)}, spring.parameters.rest_length);
+      of_springs.emplace(EdgeVertices{std::min(spring.i, spring.j), std::max(spring.i, spring.j)},
+                         spring.parameters.rest_length);
   }
   std::vector<double> lengths;
   for (const EdgeVertices& edge : surface.edges) {
@@ -29,7 +32,8 @@ std::vector<double> rest_lengths(const CollisionSurface& surface, const ClothMod
 }
 
 // The pinned nodes that no untangling takes out of solids; "" when there are none.
-std::string pins_inside(const Scene& scene, const ClothModel& cloth, std::span<const Vec3> x, std::span<const std::uint8_t> held) {
+std::string pins_inside(const Scene& scene, const ClothModel& cloth, std::span<const Vec3> x,
+                        std::span<const std::uint8_t> held) {
   std::string text;
   for (const ClothPart& part : cloth.parts())
     for (const Solid& solid : scene.solids)
@@ -37,7 +41,9 @@ std::string pins_inside(const Scene& scene, const ClothModel& cloth, std::span<c
         const auto node = static_cast<std::size_t>(part.first_node + i);
         const double depth = held[node] ? depth_at_start(solid, x[node]) : 0.0;
         if (depth <= scene.contact.touch_tolerance) continue;
-        text += fmt::format("\n  a pin holds node {} of cloth '{}' inside solid '{}', {:.3g} m deep", i, part.name, solid.name, depth);
+        text +=
+            fmt::format("\n  a pin holds node {} of cloth '{}' inside solid '{}', {:.3g} m deep", i,
+                        part.name, solid.name, depth);
         break;  // one a cloth and solid is enough to find the pin
       }
   return text;
@@ -53,25 +59,36 @@ void SurfaceContact::untangle_start(const Scene& scene, ClothModel& cloth) {
   for (Index i = 0; i < nodes_; ++i) held[i] = pins.ndof(i) == 0;
   const CollisionSurface& surface = contact_->surface();
   const std::vector<double> rest = rest_lengths(surface, cloth, x);
-  untangled_ = untangle({surface, contact_->bodies(), mass_, held, rest, scene.solids, contact_->options()}, x);
-  if (const std::string inside = untangled_->status.ok() ? "" : pins_inside(scene, cloth, x, held); !inside.empty())
+  untangled_ = untangle(
+      {surface, contact_->bodies(), mass_, held, rest, scene.solids, contact_->options()}, x);
+  if (const std::string inside = untangled_->status.ok() ? "" : pins_inside(scene, cloth, x, held);
+      !inside.empty())
     throw InputError(
-        fmt::format("the start cannot be untangled, since pins are not moved:{}\nNothing was changed. Move the pin or the solid", inside));
+        fmt::format("the start cannot be untangled, since pins are not moved:{}\nNothing was "
+                    "changed. Move the pin or the solid",
+                    inside));
   if (!untangled_->status.ok())
     throw InputError(
-        fmt::format("cloth that intersects at the start cannot be drawn apart: {}{}\nNothing was changed. Move the cloths apart where "
-                    "they start, or start as it is with contact.allow_intersections = true and without --untangle",
+        fmt::format("cloth that intersects at the start cannot be drawn apart: {}{}\nNothing was "
+                    "changed. Move the cloths apart where "
+                    "they start, or start as it is with contact.allow_intersections = true and "
+                    "without --untangle",
                     untangled_->status.message, places(untangled_->left)));
-  if (untangled_->moved > 0) cloth.place_start(std::span<const Vec3>(x).first(static_cast<std::size_t>(nodes_)));
+  if (untangled_->moved > 0)
+    cloth.place_start(std::span<const Vec3>(x).first(static_cast<std::size_t>(nodes_)));
 }
 
 std::string describe(const UntangleReport& report) {
-  if (report.moved == 0) return "nothing to untangle at the start: no intersections, no node inside a solid";
+  if (report.moved == 0)
+    return "nothing to untangle at the start: no intersections, no node inside a solid";
   return fmt::format(
-      "untangled: {} intersections at the start, none now; {} nodes inside solids, {} now; moved {} nodes, by up to {:.3g} mm, {:.3g} mm on "
-      "average; worst stretch {:.2g} % before, {:.2g} % now; layers at least {:.2g} mm apart ({} passes)",
-      report.intersections_before, report.inside_solids_before, report.inside_solids_after, report.moved, 1e3 * report.largest,
-      1e3 * report.mean, 100 * report.stretch_before, 100 * report.stretch_after, 1e3 * report.gap, report.passes);
+      "untangled: {} intersections at the start, none now; {} nodes inside solids, {} now; moved "
+      "{} nodes, by up to {:.3g} mm, {:.3g} mm on "
+      "average; worst stretch {:.2g} % before, {:.2g} % now; layers at least {:.2g} mm apart ({} "
+      "passes)",
+      report.intersections_before, report.inside_solids_before, report.inside_solids_after,
+      report.moved, 1e3 * report.largest, 1e3 * report.mean, 100 * report.stretch_before,
+      100 * report.stretch_after, 1e3 * report.gap, report.passes);
 }
 
 }  // namespace taut

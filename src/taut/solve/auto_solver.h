@@ -1,37 +1,49 @@
 #pragma once
 // The solver `auto`: in each solve the method that should cost least, of
 //
-//   core_fast                        on the core that is the system's own, with a bound on its iterations; the measure of the others
-//                                    on the paper's where that is another: the least set-up, and few iterations far beyond what their
-//                                    bound promises
-//                                    on all but bending: that reaches twice as far and so costs most, and is seldom needed in the core
-//                                    on all of A: a direct solve in single precision, refined
-//   upcg:projected_block_diagonal    no set-up; for soft or quiet cloth. Projected: the bound on its condition holds for the blocks of Ã,
-//                                    not for those of A restricted to the free directions
-//   upcg:ic0_core, upcg:ic0          little set-up, but iterations grow with the stiffness, and they may break down
+//   core_fast                        on the core that is the system's own, with a bound on its
+//                                    iterations; the measure of the others on the paper's where
+//                                    that is another: the least set-up, and few iterations far
+//                                    beyond what their bound promises on all but bending: that
+//                                    reaches twice as far and so costs most, and is seldom needed
+//                                    in the core on all of A: a direct solve in single precision,
+//                                    refined
+//   upcg:projected_block_diagonal    no set-up; for soft or quiet cloth. Projected: the bound on
+//                                    its condition holds for the blocks of Ã, not for those of A
+//                                    restricted to the free directions
+//   upcg:ic0_core, upcg:ic0          little set-up, but iterations grow with the stiffness, and
+//                                    they may break down
 //   block_cholesky                   direct, in double precision
 //
-// Work is counted (solve/solver_work.h) from the sizes of matrix and factor and from the iterations of a method's last solve; no clock.
+// Work is counted (solve/solver_work.h) from the sizes of matrix and factor and from the iterations
+// of a method's last solve; no clock.
 //
 // Choose: the least work, of the methods that have been tried. The first solve is corePCG's.
 //
-// Try another one now and then: first those never tried, one a solve, if the fewest iterations that can be hoped for would win: one on all
-// of A; of the block diagonal a quarter of what its condition allows; of IC(0) of A a share of what that of the core took, the root of the
-// condition that the core leaves; else three. Then such as would win with half their last iterations, after 32 solves, and after twice as
-// many each time they lose (at most 256). A trial that has cost as much as the chosen method would is given up.
+// Try another one now and then: first those never tried, one a solve, if the fewest iterations that
+// can be hoped for would win: one on all of A; of the block diagonal a quarter of what its
+// condition allows; of IC(0) of A a share of what that of the core took, the root of the condition
+// that the core leaves; else three. Then such as would win with half their last iterations, after
+// 32 solves, and after twice as many each time they lose (at most 256). A trial that has cost as
+// much as the chosen method would is given up.
 //
-// Give up a method without a bound when it has cost twice what corePCG would, corePCG itself at twice what the direct one would.
+// Give up a method without a bound when it has cost twice what corePCG would, corePCG itself at
+// twice what the direct one would.
 //
-// Fall back: a method that fails is not tried again for 64 solves; corePCG goes on from its last iterate, then the direct one.
+// Fall back: a method that fails is not tried again for 64 solves; corePCG goes on from its last
+// iterate, then the direct one.
 //
-// Same accuracy: the stop test's norm depends on the preconditioner, |e|_A/|x|_A <= sqrt(cond(M⁻¹A)) tolerance. A method whose condition
-// (by Lanczos, from the coefficients of its own last solve) is above corePCG's bound gets a tolerance as much smaller; what stopped too
-// early goes on with another method. core_fast proves its error after the solve, SolveSummary::error_bound; (error_bound/stop_value)² then
-// is what the condition is to others.
+// Same accuracy: the stop test's norm depends on the preconditioner, |e|_A/|x|_A <=
+// sqrt(cond(M⁻¹A)) tolerance. A method whose condition (by Lanczos, from the coefficients of its
+// own last solve) is above corePCG's bound gets a tolerance as much smaller; what stopped too early
+// goes on with another method. core_fast proves its error after the solve,
+// SolveSummary::error_bound; (error_bound/stop_value)² then is what the condition is to others.
 //
-// Before a method's first solve its condition is taken for that of the block diagonal (core/core_bound.h), a core's for the own core's bound.
+// Before a method's first solve its condition is taken for that of the block diagonal
+// (core/core_bound.h), a core's for the own core's bound.
 //
-// Deterministic. What later choices depend on is in memory(), a few numbers, so that a resumed simulation takes the same way.
+// Deterministic. What later choices depend on is in memory(), a few numbers, so that a resumed
+// simulation takes the same way.
 
 #include <array>
 #include <memory>
@@ -57,22 +69,38 @@ class AutoSolver : public ConstrainedSolver {
   bool is_direct() const override { return last_solved_ == direct; }
 
  private:
-  enum Method : int { core, stretch_core, unbent_core, full_core, block_diagonal, ic0_core, ic0, direct, method_count };
+  enum Method : int {
+    core,
+    stretch_core,
+    unbent_core,
+    full_core,
+    block_diagonal,
+    ic0_core,
+    ic0,
+    direct,
+    method_count
+  };
   // Whether its accuracy has to be learnt.
-  static bool is_incomplete(Method method) { return method != core && method != full_core && method != direct; }
-  static bool has_core(Method method) { return method == core || method == stretch_core || method == unbent_core || method == full_core; }
+  static bool is_incomplete(Method method) {
+    return method != core && method != full_core && method != direct;
+  }
+  static bool has_core(Method method) {
+    return method == core || method == stretch_core || method == unbent_core || method == full_core;
+  }
   static bool available(Method method, const SystemSize& size);
   static double first_condition(Method method, const LinearSystem& system);
   static double allowed_condition(const LinearSystem& system);
 
   // What is remembered of a method. All numbers are doubles, so that a memory is a list of them.
   struct Record {
-    double iterations = -1.0;  // of its last solve, or more than where it was given up; negative: never tried
-    double condition = 0.0;    // of M⁻¹ A, as far as its solves have shown; 0: none yet
-    double next_trial = 0.0;   // number of the solve from which on it may be tried
-    double patience = 32.0;    // solves between trials
+    // of its last solve, or more than where it was given up; negative: never tried
+    double iterations = -1.0;
+    double condition = 0.0;   // of M⁻¹ A, as far as its solves have shown; 0: none yet
+    double next_trial = 0.0;  // number of the solve from which on it may be tried
+    double patience = 32.0;   // solves between trials
     double factor_nonzeros = 0.0, factor_flops = 0.0, left_out_nonzeros = 0.0;
-    double preparations = 1.0;  // of the preconditioner, in its last solve; of a core's factor: once more in double precision
+    // of the preconditioner, in its last solve; of a core's factor: once more in double precision
+    double preparations = 1.0;
   };
   enum class Attempt { solved, given_up, failed };
 
@@ -88,7 +116,8 @@ class AutoSolver : public ConstrainedSolver {
   int budget(Method method, const SystemSize& size, double limit) const;
   double tolerance_for(Method method, const LinearSystem& system) const;
   Attempt attempt(Method method, int most_iterations, Solve& solve);
-  void learn(Method method, const SolveSummary& summary, const CgCoefficients& record, double tolerance, Solve& solve);
+  void learn(Method method, const SolveSummary& summary, const CgCoefficients& record,
+             double tolerance, Solve& solve);
   void note_trial(Method method, bool won);
   ConstrainedSolver& solver(Method method);
   std::span<const std::uint8_t> all_blocks(const BlockCsr& a);

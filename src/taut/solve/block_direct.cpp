@@ -48,7 +48,8 @@ void BlockDirect::run(const LinearSystem& system, std::span<double> x, SolveSumm
   summary.solve_ms = timer.lap();
   summary.factor_nonzeros = factor_.statistics().nonzeros;
   summary.factor_flops = factor_.statistics().flops;
-  summary.memory_bytes = factor_.statistics().bytes + 2.0 * sizeof(double) * static_cast<double>(x.size());
+  summary.memory_bytes =
+      factor_.statistics().bytes + 2.0 * sizeof(double) * static_cast<double>(x.size());
 }
 
 }  // namespace taut

@@ -7,12 +7,12 @@
 
 #include "taut/base/parallel.h"
 #include "taut/base/timer.h"
-#include "taut/linalg/vector_ops.h"
 #include "taut/core/core_bound.h"
+#include "taut/core/replacement_choice.h"
+#include "taut/linalg/vector_ops.h"
 #include "taut/solve/full_space.h"
 #include "taut/solve/preconditioner_choice.h"
 #include "taut/solve/reduced_pcg.h"
-#include "taut/core/replacement_choice.h"
 
 namespace taut {
 
@@ -20,15 +20,18 @@ namespace {
 
 // How far above the usual rounding, in units of itself, the residual is looked at.
 constexpr double look_above = 2.0;
-// The largest rounding that is taken for harmless, as a share of the error that the stop test allows, and the most that it is taken to allow.
+// The largest rounding that is taken for harmless, as a share of the error that the stop test
+// allows, and the most that it is taken to allow.
 constexpr double harmless_share = 0.5;
 constexpr double most_allowed = 3.0;  // tolerances
 // The true residual is what was believed if it is at most this many times as large.
 constexpr double as_believed = 2.0;
-// Where rounding may be larger than this beside the masses, single precision is not tried: it would fail in most steps.
+// Where rounding may be larger than this beside the masses, single precision is not tried: it would
+// fail in most steps.
 constexpr double too_large_for_single = 2.0;
-// With products from A, the factor in single precision is looked at when convergence is slow, and taken for bad when it misjudges a
-// direction's energy by this share: then its rounding, not the springs outside the core, sets the number of iterations.
+// With products from A, the factor in single precision is looked at when convergence is slow, and
+// taken for bad when it misjudges a direction's energy by this share: then its rounding, not the
+// springs outside the core, sets the number of iterations.
 constexpr int check_every = 8;
 constexpr double worst_quality = 0.3;
 
@@ -44,7 +47,8 @@ Rounding rounding_in_single(const LinearSystem& system) {
 }
 
 // y = P x: the blocks of the mask.
-void multiply_core(const BlockCsr& a, std::span<const std::uint8_t> mask, std::span<const double> x, std::span<double> y) {
+void multiply_core(const BlockCsr& a, std::span<const std::uint8_t> mask, std::span<const double> x,
+                   std::span<double> y) {
   const BlockPattern& p = *a.pattern;
   parallel_for(p.rows(), 256, [&](Index begin, Index end) {
     for (Index i = begin; i < end; ++i) {
@@ -55,7 +59,8 @@ void multiply_core(const BlockCsr& a, std::span<const std::uint8_t> mask, std::s
         const double* block = a.block(i, k);
         const Index from = p.column_dof[k];
         for (Index r = 0; r < rows; ++r)
-          for (Index c = 0; c < p.dim(p.column[k]); ++c) y[p.dof_start[i] + r] += block[r * width + c] * x[from + c];
+          for (Index c = 0; c < p.dim(p.column[k]); ++c)
+            y[p.dof_start[i] + r] += block[r * width + c] * x[from + c];
       }
     }
   });
@@ -65,7 +70,8 @@ void multiply_core(const BlockCsr& a, std::span<const std::uint8_t> mask, std::s
 
 bool CoreFast::analyze_if_new(const LinearSystem& system, SolveSummary& summary) {
   const bool is_known = pattern_ == system.matrix->pattern &&
-                        (system.core.empty() ? std::ranges::equal(mask_, core_mask(system)) : std::ranges::equal(mask_, system.core));
+                        (system.core.empty() ? std::ranges::equal(mask_, core_mask(system))
+                                             : std::ranges::equal(mask_, system.core));
   if (is_known) return true;
   mask_ = core_mask(system);
   pattern_ = system.matrix->pattern;
@@ -82,15 +88,20 @@ bool CoreFast::analyze_if_new(const LinearSystem& system, SolveSummary& summary)
   return true;
 }
 
-bool CoreFast::factorize(CholeskyPrecision precision, const LinearSystem& system, SolveSummary& summary) {
+bool CoreFast::factorize(CholeskyPrecision precision, const LinearSystem& system,
+                         SolveSummary& summary) {
   factor_.set_precision(precision);
   summary.precision = precision == CholeskyPrecision::single_precision ? "single" : "double";
   const BlockCsr& a = *system.matrix;
   const NodeBasis basis = free_basis(system);
   knows_products_ = lumped_ && precision == CholeskyPrecision::single_precision;
   BlocksOutside outside{lumped_, replaced_};
-  if (knows_products_ || replaced_) outside.visit = [&](Index begin, Index end) { remainder_.update_rows(a, begin, end); };
-  if (replaced_) outside.beside = {remainder_.batches(), [&](Index batch) { ratios_[batch] = remainder_.ratios_in(batch, system.masses); }};
+  if (knows_products_ || replaced_)
+    outside.visit = [&](Index begin, Index end) { remainder_.update_rows(a, begin, end); };
+  if (replaced_)
+    outside.beside = {remainder_.batches(), [&](Index batch) {
+                        ratios_[batch] = remainder_.ratios_in(batch, system.masses);
+                      }};
   if (starts_at_rest_) {
     summary.status = factor_.factorize(a, basis, r_, &delta0_, outside);
     delta_ = delta0_;
@@ -102,7 +113,8 @@ bool CoreFast::factorize(CholeskyPrecision precision, const LinearSystem& system
   return summary.status.ok();
 }
 
-bool CoreFast::begin_in_double(const LinearSystem& system, bool single_has_failed, SolveSummary& summary) {
+bool CoreFast::begin_in_double(const LinearSystem& system, bool single_has_failed,
+                               SolveSummary& summary) {
   if (single_has_failed) {
     summary.remark = fmt::format("double precision: {}", summary.status.message);
     ++summary.fallbacks;
@@ -112,7 +124,8 @@ bool CoreFast::begin_in_double(const LinearSystem& system, bool single_has_faile
   // Not what springs alone would leave.
   lumped_ = false;
   take_outside(system);
-  summary.remark += fmt::format("{}the blocks outside the core not lumped: {}", summary.remark.empty() ? "" : "; ", summary.status.message);
+  summary.remark += fmt::format("{}the blocks outside the core not lumped: {}",
+                                summary.remark.empty() ? "" : "; ", summary.status.message);
   ++summary.fallbacks;
   return factorize(CholeskyPrecision::double_precision, system, summary);
 }
@@ -134,8 +147,8 @@ void CoreFast::bound_replaced() {
   condition_ = excess_ * (1.0 + 2.0 * ratio.dropped);
 }
 
-// For the search direction c, whose product with A is in q, and w = P c: wᵀ P̃⁻¹ w / cᵀ w, which is 1 but for the factor's rounding.
-// Takes q_ for w.
+// For the search direction c, whose product with A is in q, and w = P c: wᵀ P̃⁻¹ w / cᵀ w, which is
+// 1 but for the factor's rounding. Takes q_ for w.
 double CoreFast::factor_quality(const BlockCsr& a) {
   if (lumped_) {
     remainder_.subtract(c_, q_);
@@ -161,24 +174,31 @@ void CoreFast::start(const LinearSystem& system, std::span<double> x) {
   if (!starts_at_rest_) residual(system, x);
 }
 
-// Conjugate gradients for the residual in r_, whose forward solve came with the factorisation, from x on; `done` iterations came before.
-KrylovResult CoreFast::iterate(const LinearSystem& system, std::span<double> x, int done, int max_iterations, bool in_single) {
+// Conjugate gradients for the residual in r_, whose forward solve came with the factorisation, from
+// x on; `done` iterations came before.
+KrylovResult CoreFast::iterate(const LinearSystem& system, std::span<double> x, int done,
+                               int max_iterations, bool in_single) {
   const BlockCsr& a = *system.matrix;
   KrylovResult result;
   const Rounding rounding = rounding_in_single(system);
-  const double scale = std::sqrt(delta0_), limit = options_.tolerance * scale, allowed = condition_ > 0.0 ? std::min(most_allowed, std::sqrt(condition_)) : 1.0;
-  const double harmless = harmless_share * allowed * limit;  // |error|_A / |x|_A may be `allowed` tolerances by the stop test
+  const double scale = std::sqrt(delta0_), limit = options_.tolerance * scale,
+               allowed = condition_ > 0.0 ? std::min(most_allowed, std::sqrt(condition_)) : 1.0;
+  // |error|_A / |x|_A may be `allowed` tolerances by the stop test
+  const double harmless = harmless_share * allowed * limit;
   double delta = delta_, previous = 0.0;  // previous: of the direction in c_; 0 begins anew
   double seen = std::sqrt(delta);         // of the last residual that came from A itself
-  double begin = seen, aim = limit;       // of this part of the loop: where it began, what it had to reach
-  int begin_iterations = 0;               // and the iterations before it
+  // of this part of the loop: where it began, what it had to reach
+  double begin = seen, aim = limit;
+  int begin_iterations = 0;  // and the iterations before it
   bool is_true = true, is_indefinite = false;
-  // Products are taken from A: where known ones might not be exact enough, this is less than a look at the end.
+  // Products are taken from A: where known ones might not be exact enough, this is less than a look
+  // at the end.
   bool from_a = !knows_products_ || rounding.worst * seen > harmless;
   result.start_value = begin / scale;
   if (coefficients) *coefficients = {};
   const auto end_part = [&] {
-    if (condition_ > 0.0) bound_iterations_ += iteration_bound(condition_, begin / scale, aim / scale);
+    if (condition_ > 0.0)
+      bound_iterations_ += iteration_bound(condition_, begin / scale, aim / scale);
   };
   while (true) {
     const double size = std::sqrt(std::abs(delta));
@@ -186,19 +206,26 @@ KrylovResult CoreFast::iterate(const LinearSystem& system, std::span<double> x, 
     if (aim = std::max(limit, look_above * rounding.usual * seen); !is_true && size <= aim) {
       residual(system, x);
       const double now = std::sqrt(factor_.solve_forward(r_));
-      if (!(now <= as_believed * size)) end_part(), begin = now, begin_iterations = result.iterations, previous = 0.0, from_a = true;
+      if (!(now <= as_believed * size))
+        end_part(), begin = now, begin_iterations = result.iterations, previous = 0.0,
+                    from_a = true;
       delta = now * now, seen = now, is_true = true;
       continue;
     }
     if (!(size > limit) || result.iterations >= max_iterations) break;
-    if (in_single && condition_ > 0.0 && result.iterations - begin_iterations >= iteration_bound(condition_, begin / scale, aim / scale)) {
-      result.status = {Outcome::breakdown, fmt::format("more than the {} iterations that the core allows: its factor is not exact enough in single precision",
-                                                       result.iterations - begin_iterations)};
+    if (in_single && condition_ > 0.0 &&
+        result.iterations - begin_iterations >=
+            iteration_bound(condition_, begin / scale, aim / scale)) {
+      result.status = {Outcome::breakdown,
+                       fmt::format("more than the {} iterations that the core allows: its factor "
+                                   "is not exact enough in single precision",
+                                   result.iterations - begin_iterations)};
       break;
     }
     const double beta = previous == 0.0 ? 0.0 : delta / previous;
     factor_.solve_backward(beta, c_);
-    const double curvature = from_a ? multiply_dot(a, c_, q_) : remainder_.advance(beta, r_, c_, p_, q_);
+    const double curvature =
+        from_a ? multiply_dot(a, c_, q_) : remainder_.advance(beta, r_, c_, p_, q_);
     if (!(curvature > 0.0)) {
       is_indefinite = true;
       break;
@@ -211,7 +238,8 @@ KrylovResult CoreFast::iterate(const LinearSystem& system, std::span<double> x, 
       if (const double quality = factor_quality(a); !(std::abs(quality - 1.0) < worst_quality)) {
         ++result.iterations;
         result.status = {Outcome::breakdown,
-                         fmt::format("after {} iterations the factor in single precision is wrong by {:.2g} along the search direction",
+                         fmt::format("after {} iterations the factor in single precision is wrong "
+                                     "by {:.2g} along the search direction",
                                      result.iterations, quality - 1.0)};
         break;
       }
@@ -219,7 +247,8 @@ KrylovResult CoreFast::iterate(const LinearSystem& system, std::span<double> x, 
     previous = delta;
     delta = factor_.solve_forward(r_, largest);
     ++result.iterations;
-    if (coefficients) coefficients->alpha.push_back(alpha), coefficients->beta.push_back(delta / previous);
+    if (coefficients)
+      coefficients->alpha.push_back(alpha), coefficients->beta.push_back(delta / previous);
     if (observer) observer(done + result.iterations, std::sqrt(std::abs(delta)) / scale, x);
   }
   aim = limit;
@@ -227,14 +256,18 @@ KrylovResult CoreFast::iterate(const LinearSystem& system, std::span<double> x, 
   result.stop_value = std::sqrt(std::abs(delta)) / scale;
   if (!result.status.ok()) return result;
   if (!std::isfinite(delta)) {
-    result.status = {Outcome::not_finite, fmt::format("the residual is not finite after {} iterations", result.iterations)};
-  } else if (is_indefinite) {
     result.status = {
-        Outcome::not_positive_definite,
-        fmt::format("a search direction of curvature <= 0 after {} iterations: the matrix is not positive definite", result.iterations)};
+        Outcome::not_finite,
+        fmt::format("the residual is not finite after {} iterations", result.iterations)};
+  } else if (is_indefinite) {
+    result.status = {Outcome::not_positive_definite,
+                     fmt::format("a search direction of curvature <= 0 after {} iterations: the "
+                                 "matrix is not positive definite",
+                                 result.iterations)};
   } else if (result.stop_value > options_.tolerance) {
     result.status = {Outcome::max_iterations,
-                     fmt::format("{} iterations reach {:.3g}, not {:.3g}", result.iterations, result.stop_value, options_.tolerance)};
+                     fmt::format("{} iterations reach {:.3g}, not {:.3g}", result.iterations,
+                                 result.stop_value, options_.tolerance)};
   }
   return result;
 }
@@ -251,7 +284,8 @@ void CoreFast::run(const LinearSystem& system, std::span<double> x, SolveSummary
   take_outside(system);
   summary.solve_ms = timer.lap();
   const bool tries_single = !(rounding_in_single(system).worst > too_large_for_single);
-  const bool in_single = tries_single && factorize(CholeskyPrecision::single_precision, system, summary);
+  const bool in_single =
+      tries_single && factorize(CholeskyPrecision::single_precision, system, summary);
   if (!in_single && !begin_in_double(system, tries_single, summary)) return;
   bound_replaced();
   summary.factor_ms = timer.lap();
@@ -287,11 +321,14 @@ void CoreFast::run(const LinearSystem& system, std::span<double> x, SolveSummary
   take_over(result, summary);
   summary.replaced = replaced_;
   if (condition_ > 0.0) summary.bound_iterations = bound_iterations_;
-  if (lumped_ && from_rest && energy_ > 0.0) summary.error_bound = result.stop_value * std::sqrt(excess_ * delta0_ / energy_);
+  if (lumped_ && from_rest && energy_ > 0.0)
+    summary.error_bound = result.stop_value * std::sqrt(excess_ * delta0_ / energy_);
   summary.factor_nonzeros = factor_.statistics().nonzeros;
   summary.factor_flops = factor_.statistics().flops;
-  if (pattern_->uniform_dim == 3) summary.left_out_nonzeros = static_cast<double>(remainder_.nonzeros());
-  summary.memory_bytes = factor_.statistics().bytes + static_cast<double>(remainder_.bytes()) + 5.0 * sizeof(double) * static_cast<double>(x.size());
+  if (pattern_->uniform_dim == 3)
+    summary.left_out_nonzeros = static_cast<double>(remainder_.nonzeros());
+  summary.memory_bytes = factor_.statistics().bytes + static_cast<double>(remainder_.bytes()) +
+                         5.0 * sizeof(double) * static_cast<double>(x.size());
 }
 
 }  // namespace taut

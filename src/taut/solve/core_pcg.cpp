@@ -4,8 +4,8 @@
 
 #include "taut/base/parallel.h"
 #include "taut/base/timer.h"
-#include "taut/linalg/factor_preconditioner.h"
 #include "taut/core/core_bound.h"
+#include "taut/linalg/factor_preconditioner.h"
 #include "taut/solve/preconditioner_choice.h"
 #include "taut/solve/reduced_pcg.h"
 
@@ -13,7 +13,8 @@ namespace taut {
 
 namespace {
 
-// Π A Πᵀ as a scalar matrix: row k is unknown perm[k]. Columns within a row stay in A's order, which products do not mind.
+// Π A Πᵀ as a scalar matrix: row k is unknown perm[k]. Columns within a row stay in A's order,
+// which products do not mind.
 BlockCsr permuted(const BlockCsr& a, std::span<const Index> perm) {
   const BlockPattern& p = *a.pattern;
   const Index n = p.dofs();
@@ -21,7 +22,8 @@ BlockCsr permuted(const BlockCsr& a, std::span<const Index> perm) {
   for (Index k = 0; k < n; ++k) place[perm[k]] = k;
   for (Index i = 0; i < p.rows(); ++i)
     for (Index r = p.dof_start[i]; r < p.dof_start[i + 1]; ++r) node_of[r] = i;
-  std::vector<Index> row_start(static_cast<std::size_t>(n) + 1, 0), dof_start(static_cast<std::size_t>(n) + 1);
+  std::vector<Index> row_start(static_cast<std::size_t>(n) + 1, 0),
+      dof_start(static_cast<std::size_t>(n) + 1);
   for (Index k = 0; k <= n; ++k) dof_start[k] = k;
   for (Index k = 0; k < n; ++k) row_start[k + 1] = row_start[k] + p.width(node_of[perm[k]]);
   std::vector<Index> column(static_cast<std::size_t>(row_start[n]));
@@ -45,7 +47,8 @@ BlockCsr permuted(const BlockCsr& a, std::span<const Index> perm) {
 
 }  // namespace
 
-CorePcg::CorePcg(SolverOptions options, const std::string& backend) : ConstrainedSolver(std::move(options)) {
+CorePcg::CorePcg(SolverOptions options, const std::string& backend)
+    : ConstrainedSolver(std::move(options)) {
   cholesky_ = make_cholesky(backend.empty() ? "cholmod" : backend);
   if (!cholesky_ && backend.empty()) {
     cholesky_ = make_cholesky("eigen");
@@ -74,17 +77,21 @@ void CorePcg::run(const LinearSystem& system, std::span<double> x, SolveSummary&
     loop_in_factor_order(system, x, summary);
   } else {
     const FactorPreconditioner m(*cholesky_, false);
-    reduced_pcg(system, reduced_, m, options_.tolerance, iteration_limit(reduced_.matrix().dofs()), observer, x, summary,
-                coefficients);
+    reduced_pcg(system, reduced_, m, options_.tolerance, iteration_limit(reduced_.matrix().dofs()),
+                observer, x, summary, coefficients);
   }
   summary.solve_ms = timer.lap();
-  if (system.rho >= 0.0) summary.bound_iterations = core_iteration_bound(system.rho, summary.start_value, options_.tolerance);
+  if (system.rho >= 0.0)
+    summary.bound_iterations =
+        core_iteration_bound(system.rho, summary.start_value, options_.tolerance);
   summary.factor_nonzeros = cholesky_->statistics().nonzeros;
   summary.factor_flops = cholesky_->statistics().flops;
-  summary.memory_bytes = static_cast<double>(reduced_.matrix().bytes() + core_.matrix().bytes()) + cholesky_->statistics().bytes;
+  summary.memory_bytes = static_cast<double>(reduced_.matrix().bytes() + core_.matrix().bytes()) +
+                         cholesky_->statistics().bytes;
 }
 
-void CorePcg::loop_in_factor_order(const LinearSystem& system, std::span<double> x, SolveSummary& summary) {
+void CorePcg::loop_in_factor_order(const LinearSystem& system, std::span<double> x,
+                                   SolveSummary& summary) {
   const auto perm = cholesky_->permutation();
   const std::size_t n = perm.size();
   const BlockCsr a = permuted(reduced_.matrix(), perm);
@@ -93,14 +100,17 @@ void CorePcg::loop_in_factor_order(const LinearSystem& system, std::span<double>
     for (std::size_t k = 0; k < n; ++k) reduced_.solution()[perm[k]] = ordered[k];
     reduced_.prolong_to(system, x);
   };
-  for (std::size_t k = 0; k < n; ++k) b[k] = reduced_.rhs()[perm[k]], y[k] = reduced_.solution()[perm[k]];
-  KrylovOptions options{options_.tolerance, iteration_limit(static_cast<Index>(n)), {}, coefficients};
+  for (std::size_t k = 0; k < n; ++k)
+    b[k] = reduced_.rhs()[perm[k]], y[k] = reduced_.solution()[perm[k]];
+  KrylovOptions options{
+      options_.tolerance, iteration_limit(static_cast<Index>(n)), {}, coefficients};
   if (observer)
     options.observer = [&](int iteration, double value, std::span<const double> ordered) {
       scatter(ordered);
       observer(iteration, value, x);
     };
-  take_over(pcg(BlockCsrOperator(a), FactorPreconditioner(*cholesky_, true), b, y, options), summary);
+  take_over(pcg(BlockCsrOperator(a), FactorPreconditioner(*cholesky_, true), b, y, options),
+            summary);
   scatter(y);
 }
 

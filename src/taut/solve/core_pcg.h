@@ -1,12 +1,15 @@
 #pragma once
-// corePCG (paper Section 6): conjugate gradients on Ã ỹ = b̃, preconditioned by a direct factorisation of the matrix core
+// corePCG (paper Section 6): conjugate gradients on Ã ỹ = b̃, preconditioned by a direct
+// factorisation of the matrix core
 //
-//   P = A_core = the diagonal blocks of A and those off-diagonal blocks that a stretch spring fills      Π P̃ Πᵀ = L Lᵀ
+//   P = A_core = the diagonal blocks of A and those off-diagonal blocks that a stretch spring fills
+//   Π P̃ Πᵀ = L Lᵀ
 //
-// as the paper's pseudocode goes: analyse, reorder, factorise, loop with triangular solves. Both of its ways to reorder are here:
-// `matrix`: Ã, b̃ and ỹ0 are reordered once by Π and the loop runs in the factor's order (lines 6, 7, 22);
-// `vectors`: the loop runs in node order, each preconditioner solve permutes its vectors.
-// cond(P⁻¹A) <= 2 (1 + ρ), independent of the stretch stiffness (docs/mathematics.md, 5), and the reduction keeps that.
+// as the paper's pseudocode goes: analyse, reorder, factorise, loop with triangular solves. Both of
+// its ways to reorder are here: `matrix`: Ã, b̃ and ỹ0 are reordered once by Π and the loop runs in
+// the factor's order (lines 6, 7, 22); `vectors`: the loop runs in node order, each preconditioner
+// solve permutes its vectors. cond(P⁻¹A) <= 2 (1 + ρ), independent of the stretch stiffness
+// (docs/mathematics.md, 5), and the reduction keeps that.
 
 #include "taut/linalg/sparse_cholesky.h"
 #include "taut/solve/reduced_system.h"

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cassert>
 
+#include "taut/core/core_bound.h"
 #include "taut/linalg/factor_preconditioner.h"
 #include "taut/linalg/lanczos.h"
 #include "taut/linalg/pcg.h"
-#include "taut/core/core_bound.h"
 #include "taut/solve/preconditioner_choice.h"
 #include "taut/solve/reduced_system.h"
 
@@ -51,8 +51,10 @@ CoreSpectrum measure_core_spectrum(const LinearSystem& system, double tolerance)
   const auto [smallest, largest] = ends(reduced.matrix(), m);
   result.smallest = smallest, result.largest = largest;
 
-  const int limit = std::max(1000, 10 * static_cast<int>(std::min(reduced.matrix().dofs(), Index{100000})));
-  const KrylovResult solve = pcg(BlockCsrOperator(reduced.matrix()), m, reduced.rhs(), reduced.solution(), {tolerance, limit, {}});
+  const int limit =
+      std::max(1000, 10 * static_cast<int>(std::min(reduced.matrix().dofs(), Index{100000})));
+  const KrylovResult solve = pcg(BlockCsrOperator(reduced.matrix()), m, reduced.rhs(),
+                                 reduced.solution(), {tolerance, limit, {}});
   result.iterations = solve.iterations;
   if (system.rho < 0.0) return result;
   result.rho = system.rho;

@@ -1,14 +1,19 @@
 #pragma once
 // The bound of corePCG (docs/mathematics.md, 5) beside what is measured on one system:
 //
-//   1/(1+ρ) <= λ(P⁻¹A) <= 2        cond(P⁻¹A) <= 2 (1+ρ)        iterations <= core_iteration_bound(ρ, start, tolerance)
+//   1/(1+ρ) <= λ(P⁻¹A) <= 2        cond(P⁻¹A) <= 2 (1+ρ)        iterations <=
+//                                                               core_iteration_bound(ρ, start,
+//                                                               tolerance)
 //
-//   smallest, largest   the extreme eigenvalues of P̃⁻¹Ã, by Lanczos (linalg/lanczos.h); they approach the true ones from within
+//   smallest, largest   the extreme eigenvalues of P̃⁻¹Ã, by Lanczos (linalg/lanczos.h); they
+//                       approach the true ones from within
 //   bound               2 (1+ρ), of largest/smallest
-//   rho                 the system's ρ; negative, like `bound` and `bound_iterations`, when the system does not know it
+//   rho                 the system's ρ; negative, like `bound` and `bound_iterations`, when the
+//                       system does not know it
 //   iterations          that corePCG takes from the system's guess to `tolerance`
 //
-// All zero when the core cannot be factorised. One factorisation, two runs of CG: for benches, not for steps.
+// All zero when the core cannot be factorised. One factorisation, two runs of CG: for benches, not
+// for steps.
 
 #include "taut/solve/linear_system.h"
 

@@ -29,7 +29,8 @@ void Direct::run(const LinearSystem& system, std::span<double> x, SolveSummary& 
   summary.solve_ms = timer.lap();
   summary.factor_nonzeros = cholesky_->statistics().nonzeros;
   summary.factor_flops = cholesky_->statistics().flops;
-  summary.memory_bytes = static_cast<double>(reduced_.matrix().bytes()) + cholesky_->statistics().bytes;
+  summary.memory_bytes =
+      static_cast<double>(reduced_.matrix().bytes()) + cholesky_->statistics().bytes;
 }
 
 }  // namespace taut

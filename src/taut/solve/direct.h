@@ -1,5 +1,6 @@
 #pragma once
-// Direct solution of the reduced system by sparse Cholesky (paper Section 4): analysis, factorisation, one forward and one backward solve.
+// Direct solution of the reduced system by sparse Cholesky (paper Section 4): analysis,
+// factorisation, one forward and one backward solve.
 
 #include "taut/linalg/sparse_cholesky.h"
 #include "taut/solve/reduced_system.h"
@@ -7,13 +8,15 @@
 
 namespace taut {
 
-// kept: the analysis stays while the reduced pattern does, whatever SolverOptions::reuse_analysis says.
+// kept: the analysis stays while the reduced pattern does, whatever SolverOptions::reuse_analysis
+// says.
 enum class AnalysisUse { by_option, kept };
 
 class Direct : public ConstrainedSolver {
  public:
   // backend: a name known to make_cholesky(), which must be there (asserted).
-  Direct(SolverOptions options, const std::string& backend, AnalysisUse analysis = AnalysisUse::by_option);
+  Direct(SolverOptions options, const std::string& backend,
+         AnalysisUse analysis = AnalysisUse::by_option);
 
  protected:
   bool is_direct() const override { return true; }

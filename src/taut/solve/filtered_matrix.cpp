@@ -7,7 +7,8 @@ namespace taut {
 
 namespace {
 
-void filter(const BlockCsr& a, const ConstraintSet* constraints, bool columns_too, BlockCsr& filtered) {
+void filter(const BlockCsr& a, const ConstraintSet* constraints, bool columns_too,
+            BlockCsr& filtered) {
   filtered = a;
   if (!constraints) return;
   const BlockPattern& p = *a.pattern;
@@ -19,7 +20,8 @@ void filter(const BlockCsr& a, const ConstraintSet* constraints, bool columns_to
         const Index j = p.column[k];
         const bool right = columns_too && constraints->ndof(j) < 3;
         if (constraints->ndof(i) == 3 && !right) continue;
-        Eigen::Map<RowMajor3, 0, Eigen::OuterStride<>> block(filtered.block(i, k), Eigen::OuterStride<>(p.width(i)));
+        Eigen::Map<RowMajor3, 0, Eigen::OuterStride<>> block(filtered.block(i, k),
+                                                             Eigen::OuterStride<>(p.width(i)));
         Mat3 value = constraints->projection(i) * block;
         if (right) value = Mat3(value * constraints->projection(j));
         if (i == j) value += scale[i] * (Mat3::Identity() - constraints->projection(i));
@@ -30,8 +32,12 @@ void filter(const BlockCsr& a, const ConstraintSet* constraints, bool columns_to
 
 }  // namespace
 
-void filter_matrix(const BlockCsr& a, const ConstraintSet* constraints, BlockCsr& filtered) { filter(a, constraints, true, filtered); }
+void filter_matrix(const BlockCsr& a, const ConstraintSet* constraints, BlockCsr& filtered) {
+  filter(a, constraints, true, filtered);
+}
 
-void filter_rows(const BlockCsr& a, const ConstraintSet* constraints, BlockCsr& filtered) { filter(a, constraints, false, filtered); }
+void filter_rows(const BlockCsr& a, const ConstraintSet* constraints, BlockCsr& filtered) {
+  filter(a, constraints, false, filtered);
+}
 
 }  // namespace taut

@@ -1,7 +1,8 @@
 #pragma once
 // The two matrices that keep A's size while constraints come and go (docs/mathematics.md, 3):
 //
-//   S A S + d (I-S)   symmetric: the pre-filtered form (Tamstorf et al. 2015)          S A + d (I-S)   the paper's Eq. 10
+//   S A S + d (I-S)   symmetric: the pre-filtered form (Tamstorf et al. 2015)          S A + d
+//   (I-S)   the paper's Eq. 10
 //
 // d: a mass per node, see node_scale.h. Without constraints (null) both are A.
 

@@ -1,10 +1,12 @@
 #pragma once
-// The reduced system without forming it: solvers that read A as it is and take the constraints in as a basis per node
-// (linalg/node_basis.h).
+// The reduced system without forming it: solvers that read A as it is and take the constraints in
+// as a basis per node (linalg/node_basis.h).
 //
-//   Ã = Uᵀ A U is the product prolong, A, restrict; its core, Uᵀ P U, is what BlockCholesky factorises from A's blocks with that basis
+//   Ã = Uᵀ A U is the product prolong, A, restrict; its core, Uᵀ P U, is what BlockCholesky
+//   factorises from A's blocks with that basis
 //
-// Vectors have 3N entries. b̂ below stands for b̃ = Uᵀ b̂; what it holds in constrained directions nobody reads.
+// Vectors have 3N entries. b̂ below stands for b̃ = Uᵀ b̂; what it holds in constrained directions
+// nobody reads.
 
 #include "taut/linalg/node_basis.h"
 #include "taut/solve/linear_system.h"

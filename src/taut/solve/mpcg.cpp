@@ -46,7 +46,8 @@ void Mpcg::run(const LinearSystem& system, std::span<double> x, SolveSummary& su
   const Preconditioner& m = *m_;
   summary.status = m_->update(source);
   summary.remark = m.remark();
-  summary.memory_bytes = 4.0 * sizeof(double) * n + static_cast<double>(source_.bytes() + m.bytes());
+  summary.memory_bytes =
+      4.0 * sizeof(double) * n + static_cast<double>(source_.bytes() + m.bytes());
   initial_guess(system, x);
   summary.factor_ms = timer.lap();
   if (!summary.status.ok()) return;
@@ -102,17 +103,22 @@ void Mpcg::run(const LinearSystem& system, std::span<double> x, SolveSummary& su
   summary.stop_value = relative(delta);
   summary.solve_ms = timer.lap();
   if (!std::isfinite(delta) || !std::isfinite(delta0)) {
-    summary.status = {Outcome::not_finite, fmt::format("the residual is not finite after {} iterations", summary.iterations)};
+    summary.status = {
+        Outcome::not_finite,
+        fmt::format("the residual is not finite after {} iterations", summary.iterations)};
   } else if (delta < 0.0 || delta0 < 0.0) {
     summary.status = {Outcome::not_positive_definite,
-                      fmt::format("rᵀ M⁻¹ r = {:.3g} < 0 after {} iterations: the preconditioner is not positive definite",
+                      fmt::format("rᵀ M⁻¹ r = {:.3g} < 0 after {} iterations: the preconditioner "
+                                  "is not positive definite",
                                   std::min(delta, delta0), summary.iterations)};
   } else if (!(curvature > 0.0)) {
     summary.status = {Outcome::not_positive_definite,
-                      fmt::format("a search direction of curvature {:.3g} after {} iterations", curvature, summary.iterations)};
+                      fmt::format("a search direction of curvature {:.3g} after {} iterations",
+                                  curvature, summary.iterations)};
   } else if (delta > limit) {
     summary.status = {Outcome::max_iterations,
-                      fmt::format("{} iterations reach {:.3g}, not {:.3g}", summary.iterations, summary.stop_value, options_.tolerance)};
+                      fmt::format("{} iterations reach {:.3g}, not {:.3g}", summary.iterations,
+                                  summary.stop_value, options_.tolerance)};
   }
 }
 

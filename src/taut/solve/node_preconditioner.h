@@ -4,7 +4,8 @@
 //   scalar   M_p = diag(A)                 block   M_p = the 3x3 diagonal blocks of A
 //   full space     z = M_p⁻¹ r             reduced space   z_i = U_iᵀ M_p,i⁻¹ U_i r_i
 //
-// With the second, uPCG takes exactly MPCG's steps (Ascher & Boxerman 2003; docs/mathematics.md, 3.2).
+// With the second, uPCG takes exactly MPCG's steps (Ascher & Boxerman 2003; docs/mathematics.md,
+// 3.2).
 
 #include "taut/constraint/constraint_set.h"
 #include "taut/linalg/preconditioner.h"
@@ -16,11 +17,14 @@ enum class NodeDiagonal { scalar, block };
 // For use with the reduced matrix; built from the full one.
 class ProjectedNodePreconditioner : public Preconditioner {
  public:
-  ProjectedNodePreconditioner(NodeDiagonal kind, const ConstraintSet* constraints) : kind_(kind), constraints_(constraints) {}
+  ProjectedNodePreconditioner(NodeDiagonal kind, const ConstraintSet* constraints)
+      : kind_(kind), constraints_(constraints) {}
   // a is the full matrix A. The constraints are read here and not kept in use afterwards.
   Status update(const BlockCsr& a) override;
   void apply(std::span<const double> r, std::span<double> z) const override;
-  Offset bytes() const override { return static_cast<Offset>((scalar_.size() + block_.size()) * sizeof(double)); }
+  Offset bytes() const override {
+    return static_cast<Offset>((scalar_.size() + block_.size()) * sizeof(double));
+  }
 
  private:
   struct Node {

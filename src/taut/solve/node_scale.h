@@ -1,5 +1,6 @@
 #pragma once
-// d_i: the mean of A's diagonal at node i, kg. It scales I - S where a formulation adds it to S A (docs/mathematics.md, 3.7).
+// d_i: the mean of A's diagonal at node i, kg. It scales I - S where a formulation adds it to S A
+// (docs/mathematics.md, 3.7).
 
 #include <vector>
 

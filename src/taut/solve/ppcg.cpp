@@ -22,14 +22,17 @@ void Ppcg::run(const LinearSystem& system, std::span<double> x, SolveSummary& su
     project_free(system.constraints, rhs);
   }
   // The diagonal blocks and the whole are read from the filtered matrix itself.
-  const BlockCsr& source = choice_.source == PreconditionerSource::core ? source_.full(system, choice_.source) : filtered_;
+  const BlockCsr& source = choice_.source == PreconditionerSource::core
+                               ? source_.full(system, choice_.source)
+                               : filtered_;
   summary.reduce_ms = timer.lap();
   if (!m_ || !options_.reuse_analysis) m_ = choice_.make(options_, nullptr);
   if (choice_.wants_near_null_space) m_->set_near_null_space(near_null_space(system, false));
   summary.status = m_->update(source);
   summary.remark = m_->remark();
   summary.factor_ms = timer.lap();
-  summary.memory_bytes = static_cast<double>(filtered_.bytes() + source_.bytes() + m_->bytes()) + 6.0 * sizeof(double) * n;
+  summary.memory_bytes = static_cast<double>(filtered_.bytes() + source_.bytes() + m_->bytes()) +
+                         6.0 * sizeof(double) * n;
   if (!summary.status.ok()) return initial_guess(system, x);
 
   std::vector<double> y(n, 0.0);

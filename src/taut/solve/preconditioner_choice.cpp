@@ -13,7 +13,8 @@ namespace taut {
 namespace {
 
 template <NodeDiagonal kind>
-std::unique_ptr<Preconditioner> make_projected(const SolverOptions&, const ConstraintSet* constraints) {
+std::unique_ptr<Preconditioner> make_projected(const SolverOptions&,
+                                               const ConstraintSet* constraints) {
   return std::make_unique<ProjectedNodePreconditioner>(kind, constraints);
 }
 
@@ -33,7 +34,8 @@ using enum PreconditionerSource;
 const PreconditionerChoice diagonal{unconstrained, make_projected<NodeDiagonal::scalar>};
 const PreconditionerChoice block_diagonal{unconstrained, make_projected<NodeDiagonal::block>};
 const PreconditionerChoice reduced_diagonal{blocks, make_plain<DiagonalPreconditioner>};
-const PreconditionerChoice projected_block_diagonal{blocks, make_plain<BlockDiagonalPreconditioner>};
+const PreconditionerChoice projected_block_diagonal{blocks,
+                                                    make_plain<BlockDiagonalPreconditioner>};
 const PreconditionerChoice ic0{constrained, make_plain<BlockIncompleteCholesky>};
 const PreconditionerChoice ic0_core{core, make_plain<BlockIncompleteCholesky>};
 const PreconditionerChoice ssor{constrained, make_ssor};
@@ -52,36 +54,43 @@ NearNullSpace near_null_space(const LinearSystem& system, bool reduced) {
   if (p.uniform_dim != 3) return {};
   NearNullSpace space = rigid_motions(p.rows(), system.positions);
   if (!system.constraints) return space;
-  const std::size_t modes = static_cast<std::size_t>(space.modes), n = static_cast<std::size_t>(p.dofs());
+  const std::size_t modes = static_cast<std::size_t>(space.modes),
+                    n = static_cast<std::size_t>(p.dofs());
   const std::size_t rows = reduced ? static_cast<std::size_t>(system.constraints->free_dofs()) : n;
   NearNullSpace result{space.modes, std::vector<double>(rows * modes)};
   std::vector<double> full(n), part(rows);
   for (std::size_t m = 0; m < modes; ++m) {
     for (std::size_t r = 0; r < n; ++r) full[r] = space.values[r * modes + m];
-    reduced ? restrict_to_free(system.constraints, full, part) : project_free(system.constraints, full);
+    reduced ? restrict_to_free(system.constraints, full, part)
+            : project_free(system.constraints, full);
     const std::vector<double>& mode = reduced ? part : full;
     for (std::size_t r = 0; r < rows; ++r) result.values[r * modes + m] = mode[r];
   }
   return result;
 }
 
-const BlockCsr& PreconditionerMatrix::reduced(const LinearSystem& system, PreconditionerSource source, const BlockCsr& reduced_matrix) {
+const BlockCsr& PreconditionerMatrix::reduced(const LinearSystem& system,
+                                              PreconditionerSource source,
+                                              const BlockCsr& reduced_matrix) {
   bytes_ = 0;
   if (source == PreconditionerSource::unconstrained) return *system.matrix;
-  if (source != PreconditionerSource::core) return reduced_matrix;  // node-wise ones read the diagonal blocks only
+  // node-wise ones read the diagonal blocks only
+  if (source != PreconditionerSource::core) return reduced_matrix;
   part_.update(*system.matrix, system.constraints, core_mask(system));
   bytes_ = part_.matrix().bytes();
   return part_.matrix();
 }
 
-const BlockCsr& PreconditionerMatrix::full(const LinearSystem& system, PreconditionerSource source) {
+const BlockCsr& PreconditionerMatrix::full(const LinearSystem& system,
+                                           PreconditionerSource source) {
   bytes_ = 0;
   const BlockCsr* matrix = system.matrix;
   if (source == PreconditionerSource::unconstrained) return *matrix;
   if (source != PreconditionerSource::constrained) {
     LinearSystem no_core = system;
     no_core.core = {};
-    part_.update(*matrix, nullptr, core_mask(source == PreconditionerSource::core ? system : no_core));
+    part_.update(*matrix, nullptr,
+                 core_mask(source == PreconditionerSource::core ? system : no_core));
     matrix = &part_.matrix();
     bytes_ += matrix->bytes();
   }

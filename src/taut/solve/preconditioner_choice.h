@@ -1,15 +1,19 @@
 #pragma once
-// What a conjugate gradient solver is preconditioned by: how the preconditioner is made, and which matrix it is made from.
+// What a conjugate gradient solver is preconditioned by: how the preconditioner is made, and which
+// matrix it is made from.
 //
-//   unconstrained   A; in full space S M_p⁻¹ S, in the reduced one Uᵀ M_p⁻¹ U. Node-wise preconditioners only: others would make a
-//                   poor inverse, because their M_p⁻¹ lets held nodes move
+//   unconstrained   A; in full space S M_p⁻¹ S, in the reduced one Uᵀ M_p⁻¹ U. Node-wise
+//                   preconditioners only: others would make a poor inverse, because their M_p⁻¹
+//                   lets held nodes move
 //   constrained     Ã = Uᵀ A U, in full space S A S + d (I-S)
 //   core            the same of the matrix core (paper Section 6)
 //   blocks          the same of A's diagonal blocks (Boxerman & Ascher 2004)
 //
-// Why MPCG may use the full-space forms: S A S + d (I-S) is Ã in the free directions and a diagonal in the others, at each node in a basis
-// of its own. Block-wise preconditioners (block diagonal, IC(0), SSOR) do not depend on the basis, so theirs are U M̃ Uᵀ plus a part in the
-// constrained directions, which S removes: MPCG with them takes uPCG's steps. The same for the pre-filtered form.
+// Why MPCG may use the full-space forms: S A S + d (I-S) is Ã in the free directions and a diagonal
+// in the others, at each node in a basis of its own. Block-wise preconditioners (block diagonal,
+// IC(0), SSOR) do not depend on the basis, so theirs are U M̃ Uᵀ plus a part in the constrained
+// directions, which S removes: MPCG with them takes uPCG's steps. The same for the pre-filtered
+// form.
 
 #include <memory>
 
@@ -24,28 +28,34 @@ enum class PreconditionerSource { unconstrained, constrained, core, blocks };
 
 struct PreconditionerChoice {
   PreconditionerSource source;
-  // The constraints are given where they are needed: for unconstrained sources in the reduced space. They need not outlive update().
-  std::unique_ptr<Preconditioner> (*make)(const SolverOptions& options, const ConstraintSet* constraints);
+  // The constraints are given where they are needed: for unconstrained sources in the reduced
+  // space. They need not outlive update().
+  std::unique_ptr<Preconditioner> (*make)(const SolverOptions& options,
+                                          const ConstraintSet* constraints);
   bool wants_near_null_space = false;
 };
 
 namespace preconditioner {
-extern const PreconditionerChoice diagonal;                  // diag(A)
-extern const PreconditionerChoice block_diagonal;            // the diagonal blocks of A
-extern const PreconditionerChoice reduced_diagonal;          // diag(Ã): depends on the choice of U; for uPCG only
+extern const PreconditionerChoice diagonal;        // diag(A)
+extern const PreconditionerChoice block_diagonal;  // the diagonal blocks of A
+// diag(Ã): depends on the choice of U; for uPCG only
+extern const PreconditionerChoice reduced_diagonal;
 extern const PreconditionerChoice projected_block_diagonal;  // the diagonal blocks of Ã
 extern const PreconditionerChoice ic0, ic0_core, ssor;
-extern const PreconditionerChoice amg;  // not block-wise: for uPCG and the pre-filtered form, which do not need it to commute with S
+// not block-wise: for uPCG and the pre-filtered form, which do not need it to commute with S
+extern const PreconditionerChoice amg;
 }  // namespace preconditioner
 
-// The rigid motions of the free unknowns, S R or Uᵀ R; only translations where the system has no positions, empty where its nodes are not
-// in space.
+// The rigid motions of the free unknowns, S R or Uᵀ R; only translations where the system has no
+// positions, empty where its nodes are not in space.
 NearNullSpace near_null_space(const LinearSystem& system, bool reduced);
 
-// Forms the source matrix and keeps its memory and pattern from one step to the next. The references hold until the next call.
+// Forms the source matrix and keeps its memory and pattern from one step to the next. The
+// references hold until the next call.
 class PreconditionerMatrix {
  public:
-  const BlockCsr& reduced(const LinearSystem& system, PreconditionerSource source, const BlockCsr& reduced_matrix);
+  const BlockCsr& reduced(const LinearSystem& system, PreconditionerSource source,
+                          const BlockCsr& reduced_matrix);
   const BlockCsr& full(const LinearSystem& system, PreconditionerSource source);
   Offset bytes() const { return bytes_; }  // of what it holds itself
 

@@ -9,15 +9,17 @@ void take_over(const KrylovResult& result, SolveSummary& summary) {
   summary.start_value = result.start_value;
 }
 
-void reduced_pcg(const LinearSystem& system, ReducedSystem& reduced, const Preconditioner& m, double tolerance, int max_iterations,
-                 const SolveObserver& observer, std::span<double> x, SolveSummary& summary, CgCoefficients* coefficients) {
+void reduced_pcg(const LinearSystem& system, ReducedSystem& reduced, const Preconditioner& m,
+                 double tolerance, int max_iterations, const SolveObserver& observer,
+                 std::span<double> x, SolveSummary& summary, CgCoefficients* coefficients) {
   KrylovOptions options{tolerance, max_iterations, {}, coefficients};
   if (observer)
     options.observer = [&](int iteration, double value, std::span<const double> y) {
       prolong(system.constraints, y, system.z, x);
       observer(iteration, value, x);
     };
-  take_over(pcg(BlockCsrOperator(reduced.matrix()), m, reduced.rhs(), reduced.solution(), options), summary);
+  take_over(pcg(BlockCsrOperator(reduced.matrix()), m, reduced.rhs(), reduced.solution(), options),
+            summary);
   reduced.prolong_to(system, x);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
-// What uPCG, the direct solvers and corePCG share: Ã, b̃ and the reduced initial guess (paper Section 3).
+// What uPCG, the direct solvers and corePCG share: Ã, b̃ and the reduced initial guess (paper
+// Section 3).
 
 #include "taut/constraint/reduction.h"
 #include "taut/solve/linear_system.h"

@@ -16,8 +16,10 @@ namespace {
 
 constexpr int max_refinements = 20;
 
-// r = b - A y, each entry summed in extended precision and rounded once: in double the residual of a good y is all rounding.
-void extended_residual(const BlockCsr& a, std::span<const double> b, std::span<const double> y, std::span<double> r) {
+// r = b - A y, each entry summed in extended precision and rounded once: in double the residual of
+// a good y is all rounding.
+void extended_residual(const BlockCsr& a, std::span<const double> b, std::span<const double> y,
+                       std::span<double> r) {
   const BlockPattern& p = *a.pattern;
   parallel_for(p.rows(), 512, [&](Index begin, Index end) {
     for (Index i = begin; i < end; ++i)
@@ -26,7 +28,8 @@ void extended_residual(const BlockCsr& a, std::span<const double> b, std::span<c
         const double* value = a.values.data() + p.value_start[i] + Offset{row} * p.width(i);
         long double sum = b[dof];
         for (Index k = p.row_start[i]; k < p.row_start[i + 1]; ++k)
-          for (Index c = p.dof_start[p.column[k]]; c < p.dof_start[p.column[k] + 1]; ++c) sum -= static_cast<long double>(*value++) * y[c];
+          for (Index c = p.dof_start[p.column[k]]; c < p.dof_start[p.column[k] + 1]; ++c)
+            sum -= static_cast<long double>(*value++) * y[c];
         r[dof] = static_cast<double>(sum);
       }
   });
@@ -38,14 +41,16 @@ double anorm(const BlockCsr& a, std::span<const double> y) {
 }
 
 // Refines y in place.
-Status refine(const BlockCsr& a, SparseCholesky& factor, std::span<const double> b, std::span<double> y, ReferenceReport& report) {
+Status refine(const BlockCsr& a, SparseCholesky& factor, std::span<const double> b,
+              std::span<double> y, ReferenceReport& report) {
   std::vector<double> r(y.size()), d(y.size()), best(y.begin(), y.end());
   double last = INFINITY;
   for (int k = 0; k <= max_refinements; ++k) {
     extended_residual(a, b, y, r);
     if (Status status = factor.solve(r, d); !status.ok()) return status;
     const double error = std::sqrt(std::abs(dot(d, r)));
-    if (!std::isfinite(error)) return {Outcome::not_finite, "the reference solution holds NaN or infinity"};
+    if (!std::isfinite(error))
+      return {Outcome::not_finite, "the reference solution holds NaN or infinity"};
     if (error < last) {
       std::ranges::copy(y, best.begin());
       report.refinements = k;
@@ -63,7 +68,8 @@ Status refine(const BlockCsr& a, SparseCholesky& factor, std::span<const double>
 Status solve_reduced(ReducedSystem& reduced, ReferenceReport& report) {
   const BlockCsr& a = reduced.matrix();
   if (a.dofs() == 0) return {};
-  if (!all_finite(reduced.rhs())) return {Outcome::not_finite, "the right-hand side holds NaN or infinity"};
+  if (!all_finite(reduced.rhs()))
+    return {Outcome::not_finite, "the right-hand side holds NaN or infinity"};
   if (!all_finite(a.values)) return {Outcome::not_finite, "the matrix holds NaN or infinity"};
   std::unique_ptr<SparseCholesky> factor = make_cholesky("cholmod");
   if (!factor) factor = make_cholesky("eigen");
@@ -92,7 +98,8 @@ std::vector<double> reference_solution(const LinearSystem& system) {
   return reference_solution(system, report);
 }
 
-double anorm_error(const LinearSystem& system, std::span<const double> x, std::span<const double> x_reference) {
+double anorm_error(const LinearSystem& system, std::span<const double> x,
+                   std::span<const double> x_reference) {
   assert(x.size() == x_reference.size() && static_cast<Index>(x.size()) == system.matrix->dofs());
   std::vector<double> error(x.begin(), x.end()), size(x_reference.begin(), x_reference.end());
   add_scaled(-1.0, x_reference, error);

@@ -32,7 +32,8 @@ SolverFactory made(Choice... choice) {
 }
 template <class Solver>
 SolverFactory made_with(const PreconditionerChoice& choice) {
-  return [&choice](const SolverOptions& options) { return std::make_unique<Solver>(options, choice); };
+  return
+      [&choice](const SolverOptions& options) { return std::make_unique<Solver>(options, choice); };
 }
 
 struct Entry {
@@ -47,7 +48,8 @@ const std::vector<Entry>& entries() {
       {"mpcg", made_with<Mpcg>(preconditioner::diagonal), nullptr},
       {"mpcg:diagonal", made_with<Mpcg>(preconditioner::diagonal), nullptr},
       {"mpcg:block_diagonal", made_with<Mpcg>(preconditioner::block_diagonal), nullptr},
-      {"mpcg:projected_block_diagonal", made_with<Mpcg>(preconditioner::projected_block_diagonal), nullptr},
+      {"mpcg:projected_block_diagonal", made_with<Mpcg>(preconditioner::projected_block_diagonal),
+       nullptr},
       {"mpcg:ic0", made_with<Mpcg>(preconditioner::ic0), nullptr},
       {"mpcg:ic0_core", made_with<Mpcg>(preconditioner::ic0_core), nullptr},
       {"mpcg:ssor", made_with<Mpcg>(preconditioner::ssor), nullptr},
@@ -55,7 +57,8 @@ const std::vector<Entry>& entries() {
       {"upcg:diagonal", made_with<Upcg>(preconditioner::diagonal), nullptr},
       {"upcg:block_diagonal", made_with<Upcg>(preconditioner::block_diagonal), nullptr},
       {"upcg:reduced_diagonal", made_with<Upcg>(preconditioner::reduced_diagonal), nullptr},
-      {"upcg:projected_block_diagonal", made_with<Upcg>(preconditioner::projected_block_diagonal), nullptr},
+      {"upcg:projected_block_diagonal", made_with<Upcg>(preconditioner::projected_block_diagonal),
+       nullptr},
       {"upcg:ic0", made_with<Upcg>(preconditioner::ic0), nullptr},
       {"upcg:ic0_core", made_with<Upcg>(preconditioner::ic0_core), nullptr},
       {"upcg:ssor", made_with<Upcg>(preconditioner::ssor), nullptr},
@@ -86,7 +89,8 @@ const std::vector<Entry>& entries() {
   return list;
 }
 
-// What a direct method in double precision may leave where the matrix is regular: stiff cloth at large steps leaves 1e-6.
+// What a direct method in double precision may leave where the matrix is regular: stiff cloth at
+// large steps leaves 1e-6.
 constexpr double worst_direct_residual = 1e-2;
 
 std::map<std::string, SolverFactory>& registered() {
@@ -101,11 +105,13 @@ const Entry* find_entry(const std::string& name) {
 }
 
 bool available(const Entry& entry) {
-  return entry.make ? !entry.backend || make_cholesky(entry.backend) : registered().contains(entry.name);
+  return entry.make ? !entry.backend || make_cholesky(entry.backend)
+                    : registered().contains(entry.name);
 }
 
 std::string how_to_get(const std::string& backend) {
-  return backend == "pardiso" ? "type './taut setup pardiso' (or install oneMKL and build with -DTAUT_WITH_PARDISO=ON)"
+  return backend == "pardiso" ? "type './taut setup pardiso' (or install oneMKL and build with "
+                                "-DTAUT_WITH_PARDISO=ON)"
                               : "build with -DTAUT_WITH_CHOLMOD=ON";
 }
 
@@ -117,11 +123,14 @@ std::unique_ptr<ConstrainedSolver> make_solver(const SolverOptions& options) {
   if (!entry) {
     const std::string near = nearest_name(options.name, known);
     throw InputError(fmt::format("unknown solver '{}'{}; the solvers are: {}", options.name,
-                                 near.empty() ? "" : fmt::format(" (did you mean '{}'?)", near), fmt::join(known, ", ")));
+                                 near.empty() ? "" : fmt::format(" (did you mean '{}'?)", near),
+                                 fmt::join(known, ", ")));
   }
   if (!available(*entry))
-    throw InputError(fmt::format("solver '{}' needs the {} backend, which is not built into this program; {}, or use one of: {}",
-                                 options.name, entry->backend, how_to_get(entry->backend), fmt::join(known, ", ")));
+    throw InputError(fmt::format(
+        "solver '{}' needs the {} backend, which is not built into this program; {}, or use one "
+        "of: {}",
+        options.name, entry->backend, how_to_get(entry->backend), fmt::join(known, ", ")));
   return entry->make ? entry->make(options) : registered().at(entry->name)(options);
 }
 
@@ -140,16 +149,20 @@ std::vector<std::string> solver_names() {
 bool is_solver_name(const std::string& name) { return find_entry(name) != nullptr; }
 
 void ConstrainedSolver::restore_memory(std::span<const double> memory) {
-  if (!memory.empty()) throw InputError(fmt::format("the stored memory of a solver does not belong to '{}'", options_.name));
+  if (!memory.empty())
+    throw InputError(
+        fmt::format("the stored memory of a solver does not belong to '{}'", options_.name));
 }
 
 int ConstrainedSolver::iteration_limit(Index unknowns) const {
   if (options_.max_iterations > 0) return options_.max_iterations;
-  return static_cast<int>(std::min<std::int64_t>(1'000'000, std::max<std::int64_t>(1000, 10 * std::int64_t{unknowns})));
+  return static_cast<int>(
+      std::min<std::int64_t>(1'000'000, std::max<std::int64_t>(1000, 10 * std::int64_t{unknowns})));
 }
 
 SolveSummary ConstrainedSolver::solve(const LinearSystem& system, std::span<double> x) {
-  assert(system.matrix && system.rhs.size() == x.size() && static_cast<Index>(x.size()) == system.matrix->dofs());
+  assert(system.matrix && system.rhs.size() == x.size() &&
+         static_cast<Index>(x.size()) == system.matrix->dofs());
   assert(!system.constraints || system.z.size() == x.size());
   SolveSummary summary;
   summary.solver = summary.method = options_.name;
@@ -172,7 +185,8 @@ SolveSummary ConstrainedSolver::solve(const LinearSystem& system, std::span<doub
     summary.status = {Outcome::not_finite, "the solution holds NaN or infinity"};
   if (summary.status.ok() && is_direct() && summary.relative_residual > worst_direct_residual)
     summary.status = {Outcome::breakdown,
-                      fmt::format("the factorisation leaves a relative residual of {:.2g}: the matrix is singular, or too "
+                      fmt::format("the factorisation leaves a relative residual of {:.2g}: the "
+                                  "matrix is singular, or too "
                                   "ill-conditioned for {} precision",
                                   summary.relative_residual, summary.precision)};
   if (!std::isfinite(summary.relative_residual)) initial_guess(system, x);

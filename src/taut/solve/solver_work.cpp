@@ -20,7 +20,9 @@ SystemSize size_of(const LinearSystem& system) {
   // Held nodes lie side by side, so what they take away goes with their number.
   const double free = size.unknowns / std::max(1.0, static_cast<double>(p.dofs()));
   const double per_block = static_cast<double>(p.value_count()) / std::max<Index>(1, p.blocks());
-  const auto blocks_of = [](std::span<const std::uint8_t> core) { return static_cast<double>(std::ranges::count(core, std::uint8_t{1})); };
+  const auto blocks_of = [](std::span<const std::uint8_t> core) {
+    return static_cast<double>(std::ranges::count(core, std::uint8_t{1}));
+  };
   const double core_blocks = system.core.empty() ? p.rows() : blocks_of(system.core);
   size.nonzeros = free * static_cast<double>(p.value_count());
   size.core_nonzeros = free * core_blocks * per_block;
@@ -35,12 +37,14 @@ FactorSize estimate_factor(const SystemSize& size, double nonzeros) {
   if (neighbours < 0.5) return {size.unknowns, size.unknowns, size.nonzeros - nonzeros};
   const double width = neighbours / 4.0;
   return {1.4 * std::pow(width, 1.12) * area * n * std::log2(n),
-          8.5 * std::pow(width, 1.75) * area * (size.unknowns / n) * std::pow(n, 1.5), outside_fill * (size.nonzeros - nonzeros)};
+          8.5 * std::pow(width, 1.75) * area * (size.unknowns / n) * std::pow(n, 1.5),
+          outside_fill * (size.nonzeros - nonzeros)};
 }
 
 namespace {
 
-// Bytes of a number of a 3x3 block with its share of the block's place: in A, and outside the core (core/block_remainder.h).
+// Bytes of a number of a 3x3 block with its share of the block's place: in A, and outside the core
+// (core/block_remainder.h).
 constexpr double in_matrix = 8.5, outside_core = 4.9;
 
 // A product that reads so many bytes, and the loop's dot products and updates.
@@ -62,7 +66,8 @@ double factor_solve_work(const SystemSize& size, const FactorSize& factor) {
 }  // namespace
 
 MethodWork block_diagonal_work(const SystemSize& size) {
-  return {reduction_work(size) + work_rates.stream * 60.0 * size.unknowns, loop_work(size, in_matrix * size.nonzeros) + work_rates.stream * 40.0 * size.unknowns};
+  return {reduction_work(size) + work_rates.stream * 60.0 * size.unknowns,
+          loop_work(size, in_matrix * size.nonzeros) + work_rates.stream * 40.0 * size.unknowns};
 }
 
 MethodWork incomplete_work(const SystemSize& size, double nonzeros, double preparations) {
@@ -71,13 +76,16 @@ MethodWork incomplete_work(const SystemSize& size, double nonzeros, double prepa
 }
 
 MethodWork core_work(const SystemSize& size, const FactorSize& factor, double preparations) {
-  const double once = 0.5 * (work_rates.factor * factor.flops + work_rates.factor_entry * factor.nonzeros);
+  const double once =
+      0.5 * (work_rates.factor * factor.flops + work_rates.factor_entry * factor.nonzeros);
   return {copy_work(size, factor) + once * (1.0 + 2.0 * (preparations - 1.0)),
           loop_work(size, outside_core * factor.left_out) + factor_solve_work(size, factor)};
 }
 
 MethodWork direct_work(const FactorSize& factor) {
-  return {work_rates.factor * factor.flops + (work_rates.factor_entry + 2.0 * work_rates.factor_solve) * factor.nonzeros, 0.0};
+  return {work_rates.factor * factor.flops +
+              (work_rates.factor_entry + 2.0 * work_rates.factor_solve) * factor.nonzeros,
+          0.0};
 }
 
 }  // namespace taut

@@ -1,6 +1,7 @@
 #pragma once
-// What the methods cost, counted: the time of one solve on a machine with fixed rates, from the sizes of the system and of the factors.
-// Only the ratios of the rates matter, and they are constants: the same choice on every machine, every run.
+// What the methods cost, counted: the time of one solve on a machine with fixed rates, from the
+// sizes of the system and of the factors. Only the ratios of the rates matter, and they are
+// constants: the same choice on every machine, every run.
 //
 //   setup            factorisation or other preparation, and forming Ã where a method needs it
 //   per_iteration    product, vector updates, preconditioner
@@ -9,17 +10,22 @@
 
 namespace taut {
 
-// Taut's kernels relative to each other, seconds a byte and an operation; measured within steps on two cores of an x86-64 server (AVX-512),
-// 6,561 and 25,921 nodes (`taut bench roofline --threads 2`).
+// Taut's kernels relative to each other, seconds a byte and an operation; measured within steps on
+// two cores of an x86-64 server (AVX-512), 6,561 and 25,921 nodes (`taut bench roofline --threads
+// 2`).
 struct WorkRates {
-  double stream = 1.0 / 40e9;              // products and vectors: bytes read and written
-  double reduce = 1.0 / 3.4e9;             // forming Ã: its bytes
-  double incomplete = 1.0 / 11e9;          // IC(0)'s solves: bytes of the matrix it is made from; each row waits for the last
+  double stream = 1.0 / 40e9;   // products and vectors: bytes read and written
+  double reduce = 1.0 / 3.4e9;  // forming Ã: its bytes
+  // IC(0)'s solves: bytes of the matrix it is made from; each row waits for the last
+  double incomplete = 1.0 / 11e9;
   double incomplete_setup = 1.0 / 1.45e9;  // IC(0)'s factorisation: the same bytes
-  double factor = 1.0 / 120e9;             // Cholesky factorisation, operations; in single precision half of it
-  double factor_entry = 2.6e-9;            // ... and its entries, likewise: small fronts are moved more than multiplied
-  double factor_solve = 0.17e-9;           // its two triangular solves: entries of the factor in single precision ...
-  double factor_node = 14e-9;              // ... and nodes
+  // Cholesky factorisation, operations; in single precision half of it
+  double factor = 1.0 / 120e9;
+  // ... and its entries, likewise: small fronts are moved more than multiplied
+  double factor_entry = 2.6e-9;
+  // its two triangular solves: entries of the factor in single precision ...
+  double factor_solve = 0.17e-9;
+  double factor_node = 14e-9;  // ... and nodes
 };
 inline constexpr WorkRates work_rates{};
 
@@ -31,7 +37,8 @@ struct MethodWork {
 struct SystemSize {
   double unknowns = 0.0, nodes = 0.0;          // free ones; nodes: a third of them
   double nonzeros = 0.0, core_nonzeros = 0.0;  // of Ã and of its core, both triangles
-  double stretch_core_nonzeros = 0.0, unbent_core_nonzeros = 0.0;  // of the other cores, 0 where there is none
+  // of the other cores, 0 where there is none
+  double stretch_core_nonzeros = 0.0, unbent_core_nonzeros = 0.0;
 };
 SystemSize size_of(const LinearSystem& system);
 
@@ -41,8 +48,8 @@ struct FactorSize {
   double left_out = 0.0;  // nonzeros of Ã outside a core and its factor's fill
   bool known() const { return nonzeros > 0.0; }
 };
-// Nested dissection of a sheet whose matrix has this many nonzeros, fitted to the cores of grids with 4 to 12 neighbours a node: the more
-// neighbours, the wider the separators.
+// Nested dissection of a sheet whose matrix has this many nonzeros, fitted to the cores of grids
+// with 4 to 12 neighbours a node: the more neighbours, the wider the separators.
 FactorSize estimate_factor(const SystemSize& size, double nonzeros);
 
 MethodWork block_diagonal_work(const SystemSize& size);

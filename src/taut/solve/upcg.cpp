@@ -19,10 +19,11 @@ void Upcg::run(const LinearSystem& system, std::span<double> x, SolveSummary& su
   summary.preparations = m_->preparations();
   summary.factor_ms = timer.lap();
   summary.memory_bytes =
-      static_cast<double>(reduced_.matrix().bytes() + source_.bytes() + m_->bytes()) + 6.0 * sizeof(double) * reduced_.rhs().size();
+      static_cast<double>(reduced_.matrix().bytes() + source_.bytes() + m_->bytes()) +
+      6.0 * sizeof(double) * reduced_.rhs().size();
   if (!summary.status.ok()) return initial_guess(system, x);
-  reduced_pcg(system, reduced_, *m_, options_.tolerance, iteration_limit(reduced_.matrix().dofs()), observer, x, summary,
-              coefficients);
+  reduced_pcg(system, reduced_, *m_, options_.tolerance, iteration_limit(reduced_.matrix().dofs()),
+              observer, x, summary, coefficients);
   summary.solve_ms = timer.lap();
 }
 

@@ -1,5 +1,6 @@
 #pragma once
-// uPCG: the unmodified conjugate gradient method on the reduced system Ã ỹ = b̃ (paper Section 3), with any preconditioner.
+// uPCG: the unmodified conjugate gradient method on the reduced system Ã ỹ = b̃ (paper Section 3),
+// with any preconditioner.
 
 #include "taut/solve/preconditioner_choice.h"
 #include "taut/solve/reduced_system.h"
@@ -9,7 +10,8 @@ namespace taut {
 
 class Upcg : public ConstrainedSolver {
  public:
-  Upcg(SolverOptions options, const PreconditionerChoice& choice) : ConstrainedSolver(std::move(options)), choice_(choice) {}
+  Upcg(SolverOptions options, const PreconditionerChoice& choice)
+      : ConstrainedSolver(std::move(options)), choice_(choice) {}
 
  protected:
   void run(const LinearSystem& system, std::span<double> x, SolveSummary& summary) override;

@@ -2,7 +2,8 @@
 
 namespace taut {
 
-void SemiImplicitEuler::assemble(Assembler& assembler, const ExternalForces& external, const State& state, double h, BlockCsr& a,
+void SemiImplicitEuler::assemble(Assembler& assembler, const ExternalForces& external,
+                                 const State& state, double h, BlockCsr& a,
                                  std::span<Vec3> b) const {
   // h (f - h K v): K's operand is -h² v. It is shared by all models, so it is formed once.
   std::vector<Vec3> operand(state.v.size());
@@ -23,8 +24,9 @@ void SemiImplicitEuler::assemble(Assembler& assembler, const ExternalForces& ext
   for (std::size_t i = 0; i < b.size(); ++i) b[i] += h * external.force()[i];
 }
 
-bool ImplicitEuler::relinearise(Assembler& assembler, const ExternalForces& external, double h, std::span<const Vec3> dv,
-                                std::span<const Vec3> x_end, std::span<const Vec3> v_end, BlockCsr& a, std::span<Vec3> b) const {
+bool ImplicitEuler::relinearise(Assembler& assembler, const ExternalForces& external, double h,
+                                std::span<const Vec3> dv, std::span<const Vec3> x_end,
+                                std::span<const Vec3> v_end, BlockCsr& a, std::span<Vec3> b) const {
   std::vector<Vec3> stiffness_operand(dv.size()), damping_operand(dv.size());
   for (std::size_t i = 0; i < dv.size(); ++i) {
     damping_operand[i] = h * dv[i];
@@ -46,13 +48,17 @@ bool ImplicitEuler::relinearise(Assembler& assembler, const ExternalForces& exte
   return true;
 }
 
-void SemiImplicitEuler::prescribe(const ConstraintSet& constraints, const State& state, double h, std::span<Vec3> z) const {
+void SemiImplicitEuler::prescribe(const ConstraintSet& constraints, const State& state, double h,
+                                  std::span<Vec3> z) const {
   for (Index i = 0; i < constraints.nodes(); ++i)
     z[i] =
-        constraints.ndof(i) == 3 ? Vec3(Vec3::Zero()) : Vec3(constraints.constrained_part(i, constraints.displacement(i) / h - state.v[i]));
+        constraints.ndof(i) == 3
+            ? Vec3(Vec3::Zero())
+            : Vec3(constraints.constrained_part(i, constraints.displacement(i) / h - state.v[i]));
 }
 
-void SemiImplicitEuler::finish(const State& state, double h, std::span<const Vec3> dv, std::span<Vec3> x_end, std::span<Vec3> v_end) const {
+void SemiImplicitEuler::finish(const State& state, double h, std::span<const Vec3> dv,
+                               std::span<Vec3> x_end, std::span<Vec3> v_end) const {
   for (std::size_t i = 0; i < dv.size(); ++i) {
     v_end[i] = state.v[i] + dv[i];
     x_end[i] = state.x[i] + h * v_end[i];

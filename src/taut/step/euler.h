@@ -1,7 +1,7 @@
 #pragma once
-// Semi-implicit Euler, (M + hD + h²K) dv = h (f - h K v), IMEX, which differs only in which springs are implicit, and implicit Euler, which
-// goes on from there: with all at the end of the step, M dv = h f, linearised (M + hD + h²K) dv' = h f + (hD + h²K) dv. Formulas:
-// integrator.h.
+// Semi-implicit Euler, (M + hD + h²K) dv = h (f - h K v), IMEX, which differs only in which springs
+// are implicit, and implicit Euler, which goes on from there: with all at the end of the step, M dv
+// = h f, linearised (M + hD + h²K) dv' = h f + (hD + h²K) dv. Formulas: integrator.h.
 
 #include "taut/step/integrator.h"
 
@@ -11,11 +11,13 @@ class SemiImplicitEuler : public Integrator {
  public:
   bool is_implicit(const ForceModel&) const override { return true; }
   std::string unknown(const State&) const override { return "dv"; }
-  void assemble(Assembler& assembler, const ExternalForces& external, const State& state, double h, BlockCsr& a,
-                std::span<Vec3> b) const override;
+  void assemble(Assembler& assembler, const ExternalForces& external, const State& state, double h,
+                BlockCsr& a, std::span<Vec3> b) const override;
   // z = (I-S)(d/h - v)
-  void prescribe(const ConstraintSet& constraints, const State& state, double h, std::span<Vec3> z) const override;
-  void finish(const State& state, double h, std::span<const Vec3> dv, std::span<Vec3> x_end, std::span<Vec3> v_end) const override;
+  void prescribe(const ConstraintSet& constraints, const State& state, double h,
+                 std::span<Vec3> z) const override;
+  void finish(const State& state, double h, std::span<const Vec3> dv, std::span<Vec3> x_end,
+              std::span<Vec3> v_end) const override;
   double rhs_per_impulse(const State&, double) const override { return 1.0; }
   double damping_coefficient(const State&, double h) const override { return h; }
   double stiffness_coefficient(const State&, double h) const override { return h * h; }
@@ -23,7 +25,9 @@ class SemiImplicitEuler : public Integrator {
 
 class Imex : public SemiImplicitEuler {
  public:
-  bool is_implicit(const ForceModel& model) const override { return model.force_class() == ForceClass::stretch; }
+  bool is_implicit(const ForceModel& model) const override {
+    return model.force_class() == ForceClass::stretch;
+  }
 };
 
 class AdaptiveImex : public SemiImplicitEuler {
@@ -34,7 +38,8 @@ class AdaptiveImex : public SemiImplicitEuler {
 class ImplicitEuler : public SemiImplicitEuler {
  public:
   bool is_nonlinear() const override { return true; }
-  bool relinearise(Assembler& assembler, const ExternalForces& external, double h, std::span<const Vec3> dv, std::span<const Vec3> x_end,
+  bool relinearise(Assembler& assembler, const ExternalForces& external, double h,
+                   std::span<const Vec3> dv, std::span<const Vec3> x_end,
                    std::span<const Vec3> v_end, BlockCsr& a, std::span<Vec3> b) const override;
 };
 

@@ -21,8 +21,9 @@ const char* name_of(IntegratorKind kind) {
   return "unknown";
 }
 
-bool Integrator::relinearise(Assembler&, const ExternalForces&, double, std::span<const Vec3>, std::span<const Vec3>, std::span<const Vec3>,
-                             BlockCsr&, std::span<Vec3>) const {
+bool Integrator::relinearise(Assembler&, const ExternalForces&, double, std::span<const Vec3>,
+                             std::span<const Vec3>, std::span<const Vec3>, BlockCsr&,
+                             std::span<Vec3>) const {
   return false;
 }
 

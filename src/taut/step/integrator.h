@@ -1,18 +1,28 @@
 #pragma once
-// Time integration: what linear system a step solves, and what its solution means (docs/mathematics.md, 1, paper Eq. 1, 2).
+// Time integration: what linear system a step solves, and what its solution means
+// (docs/mathematics.md, 1, paper Eq. 1, 2).
 //
-//   semi_implicit_euler   (M + hD + h²K) dv = h (f - h K v);   v += dv, x += h v                       (Baraff & Witkin 1998)
-//   imex                  the same, with K and spring D of the stretch springs only; f of all          (Ascher et al. 1997)
-//   imex_adaptive         the same, with K and D of all springs but those that an explicit step takes  (Boxerman & Ascher 2004;
-//                         stably at this step length                                                    element/explicit_split.h)
-//   bdf2                  (M + 2h/3 D + 4h²/9 K) dx = M [δ/3 + h/9 (8 v_n - 2 v_{n-1})] + 4h²/9 (f + D v_n) + 2h/9 D δ
-//                         δ = x_n - x_{n-1};  x += dx, v = (3 dx - δ)/(2h)                             (Choi & Ko 2002)
-//   newton                M dv = h f(x + h (v + dv), v + dv), f at the end of the step: linearised     (Hauth 2004;
-//                         again until it holds                                                          step/newton.h)
+//   semi_implicit_euler   (M + hD + h²K) dv = h (f - h K v);   v += dv, x += h v
+//   (Baraff & Witkin 1998)
+//   imex                  the same, with K and spring D of the stretch springs only; f of all
+//   (Ascher et al. 1997)
+//   imex_adaptive         the same, with K and D of all springs but those that an explicit step
+//   takes  (Boxerman & Ascher 2004;
+//                         stably at this step length
+//                         element/explicit_split.h)
+//   bdf2                  (M + 2h/3 D + 4h²/9 K) dx = M [δ/3 + h/9 (8 v_n - 2 v_{n-1})] + 4h²/9 (f
+//                         + D v_n) + 2h/9 D δ
+//                         δ = x_n - x_{n-1};  x += dx, v = (3 dx - δ)/(2h)
+//                         (Choi & Ko 2002)
+//   newton                M dv = h f(x + h (v + dv), v + dv), f at the end of the step: linearised
+//   (Hauth 2004;
+//                         again until it holds
+//                         step/newton.h)
 //
-// The unknown is a velocity change dv (m/s) or a displacement dx (m). External damping (drag, wind) is always implicit: it is diagonal and
-// costs nothing. BDF2's first step, and the step after a contact correction (State::has_previous is false), is one of semi-implicit Euler,
-// whose dv then stands for the unknown.
+// The unknown is a velocity change dv (m/s) or a displacement dx (m). External damping (drag, wind)
+// is always implicit: it is diagonal and costs nothing. BDF2's first step, and the step after a
+// contact correction (State::has_previous is false), is one of semi-implicit Euler, whose dv then
+// stands for the unknown.
 
 #include <memory>
 #include <string>
@@ -35,19 +45,23 @@ class Integrator {
   // "dv" or "dx" for this state.
   virtual std::string unknown(const State& state) const = 0;
   // A and b of a step of length h (s) from `state`. `external` has been evaluated for it.
-  virtual void assemble(Assembler& assembler, const ExternalForces& external, const State& state, double h, BlockCsr& a,
-                        std::span<Vec3> b) const = 0;
-  // For integrators whose equations are nonlinear: A and b linearised about the end state (x_end, v_end) that `unknown` gives, so that b -
-  // A unknown is the residual r there. `external` has been evaluated for that state. False: the equations are linear, and nothing is done.
-  virtual bool relinearise(Assembler& assembler, const ExternalForces& external, double h, std::span<const Vec3> unknown,
-                           std::span<const Vec3> x_end, std::span<const Vec3> v_end, BlockCsr& a, std::span<Vec3> b) const;
+  virtual void assemble(Assembler& assembler, const ExternalForces& external, const State& state,
+                        double h, BlockCsr& a, std::span<Vec3> b) const = 0;
+  // For integrators whose equations are nonlinear: A and b linearised about the end state (x_end,
+  // v_end) that `unknown` gives, so that b - A unknown is the residual r there. `external` has been
+  // evaluated for that state. False: the equations are linear, and nothing is done.
+  virtual bool relinearise(Assembler& assembler, const ExternalForces& external, double h,
+                           std::span<const Vec3> unknown, std::span<const Vec3> x_end,
+                           std::span<const Vec3> v_end, BlockCsr& a, std::span<Vec3> b) const;
   virtual bool is_nonlinear() const { return false; }
   // The prescribed part z of the unknown from the constraints' displacements; zero at free nodes.
-  virtual void prescribe(const ConstraintSet& constraints, const State& state, double h, std::span<Vec3> z) const = 0;
+  virtual void prescribe(const ConstraintSet& constraints, const State& state, double h,
+                         std::span<Vec3> z) const = 0;
   // Positions and velocities at the end of the step.
-  virtual void finish(const State& state, double h, std::span<const Vec3> unknown, std::span<Vec3> x_end, std::span<Vec3> v_end) const = 0;
-  // One N s of impulse on a node, spread over the step, adds this much to b; and (A u - b) divided by it is an impulse: h times the mean
-  // force.
+  virtual void finish(const State& state, double h, std::span<const Vec3> unknown,
+                      std::span<Vec3> x_end, std::span<Vec3> v_end) const = 0;
+  // One N s of impulse on a node, spread over the step, adds this much to b; and (A u - b) divided
+  // by it is an impulse: h times the mean force.
   virtual double rhs_per_impulse(const State& state, double h) const = 0;
   // A's coefficients of D and K, for dumps and the core's bound.
   virtual double damping_coefficient(const State& state, double h) const = 0;

@@ -28,8 +28,8 @@ void add_solve(SolveSummary& sum, const SolveSummary& solve) {
 
 }  // namespace
 
-NewtonSummary newton(const NewtonProblem& problem, const NewtonOptions& options, double scale, const SolveSummary& linear,
-                     std::vector<Vec3>& u) {
+NewtonSummary newton(const NewtonProblem& problem, const NewtonOptions& options, double scale,
+                     const SolveSummary& linear, std::vector<Vec3>& u) {
   NewtonSummary summary;
   summary.linear = linear;
   double norm = problem.relinearise(u);
@@ -43,7 +43,9 @@ NewtonSummary newton(const NewtonProblem& problem, const NewtonOptions& options,
     for (std::size_t i = 0; i < u.size(); ++i) way[i] = u[i] - before[i];
     const double downhill = problem.slope(way);
     norm = problem.relinearise(u);
-    for (int halving = 0; !(problem.slope(way) >= -steepest_uphill * std::abs(downhill)) && halving < most_halvings; ++halving) {
+    for (int halving = 0;
+         !(problem.slope(way) >= -steepest_uphill * std::abs(downhill)) && halving < most_halvings;
+         ++halving) {
       for (std::size_t i = 0; i < u.size(); ++i) u[i] = 0.5 * (before[i] + u[i]);
       norm = problem.relinearise(u);
       ++summary.halvings;
@@ -56,8 +58,10 @@ NewtonSummary newton(const NewtonProblem& problem, const NewtonOptions& options,
     summary.status = {Outcome::not_finite, "Newton's method: the residual is not finite"};
   } else if (!converged()) {
     summary.status = {Outcome::max_iterations,
-                      fmt::format("Newton's method stopped after {} of {} iterations at a residual of {:.2g}, wanted {:.2g}",
-                                  summary.iterations, options.max_iterations, summary.residual, options.tolerance)};
+                      fmt::format("Newton's method stopped after {} of {} iterations at a residual "
+                                  "of {:.2g}, wanted {:.2g}",
+                                  summary.iterations, options.max_iterations, summary.residual,
+                                  options.tolerance)};
   }
   return summary;
 }

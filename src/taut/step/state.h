@@ -2,7 +2,8 @@
 // The state of the cloth at one time, and what multistep methods remember.
 //
 //   x, v            m, m/s, one per node
-//   x_prev, v_prev  at the previous step; meaningful when has_previous (BDF2 begins with one Euler step otherwise)
+//   x_prev, v_prev  at the previous step; meaningful when has_previous (BDF2 begins with one Euler
+//                   step otherwise)
 //   last            the last solved unknown (dv or dx), the next solve's initial guess
 
 #include "taut/base/types.h"

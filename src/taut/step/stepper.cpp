@@ -8,16 +8,17 @@
 #include "taut/base/parallel.h"
 #include "taut/base/timer.h"
 #include "taut/constraint/reduction.h"
-#include "taut/linalg/vector_ops.h"
 #include "taut/core/core_bound.h"
 #include "taut/core/core_choice.h"
+#include "taut/linalg/vector_ops.h"
 #include "taut/step/newton.h"
 
 namespace taut {
 
 namespace {
 
-std::vector<bool> implicit_models(const std::vector<const ForceModel*>& models, const Integrator& integrator) {
+std::vector<bool> implicit_models(const std::vector<const ForceModel*>& models,
+                                  const Integrator& integrator) {
   std::vector<bool> implicit;
   for (const ForceModel* model : models) implicit.push_back(integrator.is_implicit(*model));
   return implicit;
@@ -25,7 +26,8 @@ std::vector<bool> implicit_models(const std::vector<const ForceModel*>& models, 
 
 // A's row of node i times u.
 Vec3 row_product(const BlockCsr& a, Index i, std::span<const Vec3> u) {
-  using Block = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>, 0, Eigen::OuterStride<>>;
+  using Block =
+      Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>, 0, Eigen::OuterStride<>>;
   const BlockPattern& p = *a.pattern;
   Vec3 sum = Vec3::Zero();
   for (Index k = p.row_start[i]; k < p.row_start[i + 1]; ++k)
@@ -35,8 +37,8 @@ Vec3 row_product(const BlockCsr& a, Index i, std::span<const Vec3> u) {
 
 }  // namespace
 
-Stepper::Stepper(Index nodes, std::vector<const ForceModel*> models, ExternalForces external, IntegratorKind integrator,
-                 SolverOptions solver, NewtonOptions newton)
+Stepper::Stepper(Index nodes, std::vector<const ForceModel*> models, ExternalForces external,
+                 IntegratorKind integrator, SolverOptions solver, NewtonOptions newton)
     : integrator_(make_integrator(integrator)),
       models_(std::move(models)),
       external_(std::move(external)),
@@ -50,13 +52,15 @@ Stepper::Stepper(Index nodes, std::vector<const ForceModel*> models, ExternalFor
   if (integrator_->is_nonlinear()) relinearised_a_ = a_;
   current_a_ = &a_;
   const std::size_t n = static_cast<std::size_t>(nodes);
-  for (auto* field : {&b_, &rhs_, &z_, &unknown_, &x_end_, &v_end_, &impulse_}) field->assign(n, Vec3::Zero());
+  for (auto* field : {&b_, &rhs_, &z_, &unknown_, &x_end_, &v_end_, &impulse_})
+    field->assign(n, Vec3::Zero());
 }
 
 std::vector<double> Stepper::block_bounds(double h) const {
   // An integrator's first step has the largest coefficients.
   const State first;
-  return assembler_.block_bounds(integrator_->stiffness_coefficient(first, h), integrator_->damping_coefficient(first, h));
+  return assembler_.block_bounds(integrator_->stiffness_coefficient(first, h),
+                                 integrator_->damping_coefficient(first, h));
 }
 
 std::vector<std::uint8_t> Stepper::chosen_core(double h) const {
@@ -77,7 +81,8 @@ void Stepper::take_core(std::vector<std::uint8_t> mask, Core& core) {
 
 Index Stepper::core_springs(CoreUsed core) const {
   if (core == CoreUsed::all)
-    return assembler_.elements_in(std::vector<std::uint8_t>(static_cast<std::size_t>(assembler_.pattern()->blocks()), 1));
+    return assembler_.elements_in(
+        std::vector<std::uint8_t>(static_cast<std::size_t>(assembler_.pattern()->blocks()), 1));
   if (core == CoreUsed::stretch && !stretch_core_.mask.empty()) return stretch_core_.springs;
   if (core == CoreUsed::unbent && !unbent_core_.mask.empty()) return unbent_core_.springs;
   return core_.springs;
@@ -85,12 +90,15 @@ Index Stepper::core_springs(CoreUsed core) const {
 
 void Stepper::choose_core(double h) {
   core_h_ = h;
-  if (wants_rho_) stiffness_ = stiffness_ratio(*assembler_.pattern(), block_bounds(h), external_.masses());
+  if (wants_rho_)
+    stiffness_ = stiffness_ratio(*assembler_.pattern(), block_bounds(h), external_.masses());
   if (!chooses_core_) return;
   take_core(chosen_core(h), core_);
   take_core(stretch_core(), stretch_core_);
   take_core(unbent_core(), unbent_core_);
-  if (unbent_core_.mask == core_.mask || unbent_core_.mask == stretch_core_.mask || stretch_core_.mask == core_.mask) unbent_core_ = {};
+  if (unbent_core_.mask == core_.mask || unbent_core_.mask == stretch_core_.mask ||
+      stretch_core_.mask == core_.mask)
+    unbent_core_ = {};
   if (stretch_core_.mask == core_.mask) stretch_core_ = {};
 }
 
@@ -113,7 +121,8 @@ void Stepper::begin(const State& state, double h) {
   assemble_ms_ = timer.milliseconds();
 }
 
-SolveSummary Stepper::solve(const ConstraintSet& constraints, std::span<const Vec3> impulses, ConstrainedSolver& solver) {
+SolveSummary Stepper::solve(const ConstraintSet& constraints, std::span<const Vec3> impulses,
+                            ConstrainedSolver& solver) {
   assert(state_);
   constraints_ = &constraints;
   rhs_ = b_;
@@ -127,19 +136,23 @@ SolveSummary Stepper::solve(const ConstraintSet& constraints, std::span<const Ve
   guess_is_iterate_ = false;
   newton_iterations_ = 0;
   SolveSummary summary = solver.solve(system(), flat(unknown_));
-  if (integrator_->is_nonlinear() && summary.status.ok()) summary = solve_nonlinear(constraints, solver, std::move(summary));
+  if (integrator_->is_nonlinear() && summary.status.ok())
+    summary = solve_nonlinear(constraints, solver, std::move(summary));
   integrator_->finish(*state_, h_, unknown_, x_end_, v_end_);
 
   parallel_for(constraints.nodes(), 1024, [&](Index begin, Index end) {
     for (Index i = begin; i < end; ++i)
       impulse_[i] = constraints.ndof(i) == 3
                         ? Vec3(Vec3::Zero())
-                        : Vec3(constraints.constrained_part(i, row_product(*current_a_, i, unknown_) - rhs_[i]) / per_impulse);
+                        : Vec3(constraints.constrained_part(
+                                   i, row_product(*current_a_, i, unknown_) - rhs_[i]) /
+                               per_impulse);
   });
   return summary;
 }
 
-SolveSummary Stepper::solve_nonlinear(const ConstraintSet& constraints, ConstrainedSolver& solver, SolveSummary first) {
+SolveSummary Stepper::solve_nonlinear(const ConstraintSet& constraints, ConstrainedSolver& solver,
+                                      SolveSummary first) {
   const double driving = free_norm(constraints, rhs_);
   std::vector<Vec3> external(external_.force().begin(), external_.force().end());
   for (Vec3& f : external) f *= h_;
@@ -149,7 +162,8 @@ SolveSummary Stepper::solve_nonlinear(const ConstraintSet& constraints, Constrai
       [&](std::span<const Vec3> d) {
         return ordered_sum(constraints.nodes(), [&](Index begin, Index end) {
           double sum = 0.0;
-          for (Index i = begin; i < end; ++i) sum += constraints.free_part(i, impulse_[i]).dot(d[i]);
+          for (Index i = begin; i < end; ++i)
+            sum += constraints.free_part(i, impulse_[i]).dot(d[i]);
           return sum;
         });
       },
@@ -170,7 +184,8 @@ double Stepper::relinearise(const ConstraintSet& constraints, std::span<const Ve
   Timer timer;
   integrator_->finish(*state_, h_, unknown, x_end_, v_end_);
   external_.evaluate(state_->time + h_, x_end_, v_end_);
-  integrator_->relinearise(assembler_, external_, h_, unknown, x_end_, v_end_, relinearised_a_, rhs_);
+  integrator_->relinearise(assembler_, external_, h_, unknown, x_end_, v_end_, relinearised_a_,
+                           rhs_);
   const double per_impulse = integrator_->rhs_per_impulse(*state_, h_);
   for (std::size_t i = 0; i < given_.size(); ++i) rhs_[i] += per_impulse * given_[i];
   current_a_ = &relinearised_a_;
@@ -185,7 +200,8 @@ double Stepper::free_norm(const ConstraintSet& constraints, std::span<const Vec3
   const auto masses = external_.masses();
   return std::sqrt(ordered_sum(constraints.nodes(), [&](Index begin, Index end) {
     double sum = 0.0;
-    for (Index i = begin; i < end; ++i) sum += constraints.free_part(i, momentum[i]).squaredNorm() / masses[i];
+    for (Index i = begin; i < end; ++i)
+      sum += constraints.free_part(i, momentum[i]).squaredNorm() / masses[i];
     return sum;
   }));
 }
@@ -199,7 +215,9 @@ void Stepper::measure_rho() {
   for (std::size_t c = 0; c < asked.size(); ++c) asked[c]->rho = rho[c];
 }
 
-double Stepper::remainder_ratio() const { return taut::remainder_ratio(*current_a_, core_.mask, external_.masses()); }
+double Stepper::remainder_ratio() const {
+  return taut::remainder_ratio(*current_a_, core_.mask, external_.masses());
+}
 
 LinearSystem Stepper::system() const {
   LinearSystem system;

@@ -1,16 +1,17 @@
 #pragma once
-// One step: assemble -> constrain -> solve -> update. Contact may ask for several solves of the same assembled system with other
-// constraints and impulses (passes); the loop in scene/ joins the two.
+// One step: assemble -> constrain -> solve -> update. Contact may ask for several solves of the
+// same assembled system with other constraints and impulses (passes); the loop in scene/ joins the
+// two.
 //
 //   begin(state, h)              A and b, once
-//   solve(constraints, impulses) the unknown, the end positions and velocities, the constraint impulses; may be repeated. One linear solve,
-//   or
+//   solve(constraints, impulses) the unknown, the end positions and velocities, the constraint
+//   impulses; may be repeated. One linear solve, or
 //                                with a nonlinear integrator as many as Newton's method takes
 //   commit(state)                takes the last solve's end state over
 //   correct(state, x, h)         takes positions over that contact has corrected since
 //
-// Constraint impulse (N s, on each node): j = (I - S)(A u - b), scaled to an impulse (docs/mathematics.md, 3.6). A positive n·j pushes
-// along n.
+// Constraint impulse (N s, on each node): j = (I - S)(A u - b), scaled to an impulse
+// (docs/mathematics.md, 3.6). A positive n·j pushes along n.
 
 #include <array>
 #include <cstdint>
@@ -25,31 +26,35 @@ namespace taut {
 class Stepper {
  public:
   // models: not owned. Whether the core is the stretch springs or chosen is the solver's option.
-  Stepper(Index nodes, std::vector<const ForceModel*> models, ExternalForces external, IntegratorKind integrator, SolverOptions solver,
-          NewtonOptions newton = {});
+  Stepper(Index nodes, std::vector<const ForceModel*> models, ExternalForces external,
+          IntegratorKind integrator, SolverOptions solver, NewtonOptions newton = {});
 
-  // Chooses the core for steps of up to h (s), whose coefficients are the largest: it then stays the same, and valid, in shorter steps. Not
-  // called: begin() does it with the longest h so far.
+  // Chooses the core for steps of up to h (s), whose coefficients are the largest: it then stays
+  // the same, and valid, in shorter steps. Not called: begin() does it with the longest h so far.
   void choose_core(double h);
   void begin(const State& state, double h);
-  SolveSummary solve(const ConstraintSet& constraints, std::span<const Vec3> impulses) { return solve(constraints, impulses, *solver_); }
+  SolveSummary solve(const ConstraintSet& constraints, std::span<const Vec3> impulses) {
+    return solve(constraints, impulses, *solver_);
+  }
   // The same with another solver than the step's own.
-  SolveSummary solve(const ConstraintSet& constraints, std::span<const Vec3> impulses, ConstrainedSolver& solver);
+  SolveSummary solve(const ConstraintSet& constraints, std::span<const Vec3> impulses,
+                     ConstrainedSolver& solver);
   std::span<const Vec3> x_end() const { return x_end_; }
   std::span<const Vec3> v_end() const { return v_end_; }
   std::span<const Vec3> constraint_impulse() const { return impulse_; }
 
   // Ends the step: state becomes (x_end, v_end) at time + h.
   void commit(State& state);
-  // After that: `corrected` positions replace the state's, the velocity is changed by what they moved over h (s), and a multistep
-  // method starts afresh.
+  // After that: `corrected` positions replace the state's, the velocity is changed by what they
+  // moved over h (s), and a multistep method starts afresh.
   void correct(State& state, std::span<const Vec3> corrected, double h) const;
   double h() const { return h_; }
-  // The next step is of another size than the last: a multistep method must not use the step before.
+  // The next step is of another size than the last: a multistep method must not use the step
+  // before.
   void start_afresh(State& state) const;
 
-  // The system of the last begin/solve, for dumps, benches and other solvers; of several linearisations the last. Valid until the next
-  // call.
+  // The system of the last begin/solve, for dumps, benches and other solvers; of several
+  // linearisations the last. Valid until the next call.
   LinearSystem system() const;
   const BlockCsr& matrix() const { return *current_a_; }
   // Linear solves of the last solve() after its first; 0 unless the integrator is nonlinear.
@@ -68,14 +73,17 @@ class Stepper {
   double assemble_ms() const { return assemble_ms_; }
   // ρ of docs/mathematics.md, 5 for the assembled system and its core.
   double remainder_ratio() const;
-  // The cores that a solver may be given, for steps of up to h: all stretch springs, these and shear, or those that are strong
-  // (core/core_choice.h).
-  std::vector<std::uint8_t> stretch_core() const { return assembler_.core_mask(ForceClass::stretch); }
+  // The cores that a solver may be given, for steps of up to h: all stretch springs, these and
+  // shear, or those that are strong (core/core_choice.h).
+  std::vector<std::uint8_t> stretch_core() const {
+    return assembler_.core_mask(ForceClass::stretch);
+  }
   std::vector<std::uint8_t> unbent_core() const;
   std::vector<std::uint8_t> chosen_core(double h) const;
 
  private:
-  SolveSummary solve_nonlinear(const ConstraintSet& constraints, ConstrainedSolver& solver, SolveSummary first);
+  SolveSummary solve_nonlinear(const ConstraintSet& constraints, ConstrainedSolver& solver,
+                               SolveSummary first);
   double relinearise(const ConstraintSet& constraints, std::span<const Vec3> unknown);
   double free_norm(const ConstraintSet& constraints, std::span<const Vec3> momentum) const;
   void measure_rho();
@@ -98,7 +106,8 @@ class Stepper {
   };
   std::array<Core*, 3> cores() { return {&core_, &stretch_core_, &unbent_core_}; }
   void take_core(std::vector<std::uint8_t> mask, Core& core);
-  Core core_, stretch_core_, unbent_core_;  // the last two with an empty mask where core_ is as good
+  // the last two with an empty mask where core_ is as good
+  Core core_, stretch_core_, unbent_core_;
 
   const State* state_ = nullptr;
   const ConstraintSet* constraints_ = nullptr;
@@ -109,7 +118,8 @@ class Stepper {
   const BlockCsr* current_a_ = nullptr;
   int newton_iterations_ = 0;
   bool guess_is_iterate_ = false;
-  std::vector<Vec3> b_, rhs_, z_, guess_, current_guess_, unknown_, x_end_, v_end_, impulse_, given_;
+  std::vector<Vec3> b_, rhs_, z_, guess_, current_guess_, unknown_, x_end_, v_end_, impulse_,
+      given_;
 };
 
 }  // namespace taut

@@ -25,6 +25,7 @@ int main() {
   a.values[0] = 4.0;
   const std::vector<double> b = {2.0};
   std::vector<double> x(1);
-  const bool solved = cholesky->analyze(a).ok() && cholesky->factorize(a).ok() && cholesky->solve(b, x).ok();
+  const bool solved =
+      cholesky->analyze(a).ok() && cholesky->factorize(a).ok() && cholesky->solve(b, x).ok();
   std::printf("%s: x = %g\n", cholesky->name().c_str(), solved ? x[0] : 0.0);
 }

@@ -12,8 +12,8 @@ namespace {
 
 constexpr Index refit_grain = 256;  // groups
 
-// Sorts items so that each run of 8^k slots is compact: halves the range, at a multiple of the largest 8^k below its length, across the
-// longest side of the items' centres.
+// Sorts items so that each run of 8^k slots is compact: halves the range, at a multiple of the
+// largest 8^k below its length, across the longest side of the items' centres.
 void order_range(std::span<Index> items, std::span<const Vec3> centre) {
   const auto count = static_cast<Index>(items.size());
   if (count <= 8) {
@@ -40,10 +40,13 @@ void order_range(std::span<Index> items, std::span<const Vec3> centre) {
 
 }  // namespace
 
-BoxTree::BoxTree(std::vector<Index> corners, int corners_per_item, std::span<const Vec3> positions, std::span<const std::uint8_t> is_solid)
+BoxTree::BoxTree(std::vector<Index> corners, int corners_per_item, std::span<const Vec3> positions,
+                 std::span<const std::uint8_t> is_solid)
     : corners_per_item_(corners_per_item) {
   const std::size_t count = corners.size() / static_cast<std::size_t>(corners_per_item);
-  const auto corner = [&](Index item, int k) { return corners[static_cast<std::size_t>(item) * corners_per_item + k]; };
+  const auto corner = [&](Index item, int k) {
+    return corners[static_cast<std::size_t>(item) * corners_per_item + k];
+  };
   std::vector<Vec3> centre(count, Vec3::Zero());
   for (Index i = 0; i < static_cast<Index>(count); ++i) {
     for (int k = 0; k < corners_per_item; ++k) centre[i] += positions[corner(i, k)];
@@ -56,14 +59,17 @@ BoxTree::BoxTree(std::vector<Index> corners, int corners_per_item, std::span<con
   for (const Index i : order_)
     for (int k = 0; k < corners_per_item; ++k) corners_.push_back(corner(i, k));
 
-  corner_groups_.assign((count + 7) / 8 * static_cast<std::size_t>(corners_per_item), {{-1, -1, -1, -1, -1, -1, -1, -1}});
+  corner_groups_.assign((count + 7) / 8 * static_cast<std::size_t>(corners_per_item),
+                        {{-1, -1, -1, -1, -1, -1, -1, -1}});
   for (Index slot = 0; slot < static_cast<Index>(count); ++slot)
-    for (int k = 0; k < corners_per_item; ++k) corner_groups_[slot / 8 * corners_per_item + k].corner[slot % 8] = this->corners(slot)[k];
+    for (int k = 0; k < corners_per_item; ++k)
+      corner_groups_[slot / 8 * corners_per_item + k].corner[slot % 8] = this->corners(slot)[k];
 
   BoxGroup empty;
   for (int t = 0; t < 2; ++t)
     for (int i = 0; i < 3; ++i)
-      for (int l = 0; l < 8; ++l) empty.low[t][i][l] = empty.high[t][i][l] = std::numeric_limits<float>::quiet_NaN();
+      for (int l = 0; l < 8; ++l)
+        empty.low[t][i][l] = empty.high[t][i][l] = std::numeric_limits<float>::quiet_NaN();
   std::size_t boxes = count;
   do {
     boxes = (boxes + 7) / 8;
@@ -148,13 +154,15 @@ void BoxTree::fit_children(int level, Index g, Mask lanes, int t) {
 template <class LanesOf>
 void BoxTree::fit(std::span<const MovingBox> vertices, const LanesOf& lanes_of) {
   for (int level = 0; level < height(); ++level)
-    parallel_for(static_cast<Index>(levels_[level].size()), refit_grain, [&](Index begin, Index end) {
-      for (Index g = begin; g < end; ++g) {
-        const Mask lanes = lanes_of(level, g);
-        if (lanes == 0) continue;
-        for (int t = 0; t < (still_ ? 1 : 2); ++t) level == 0 ? fit_items(g, lanes, t, vertices) : fit_children(level, g, lanes, t);
-      }
-    });
+    parallel_for(
+        static_cast<Index>(levels_[level].size()), refit_grain, [&](Index begin, Index end) {
+          for (Index g = begin; g < end; ++g) {
+            const Mask lanes = lanes_of(level, g);
+            if (lanes == 0) continue;
+            for (int t = 0; t < (still_ ? 1 : 2); ++t)
+              level == 0 ? fit_items(g, lanes, t, vertices) : fit_children(level, g, lanes, t);
+          }
+        });
 }
 
 void BoxTree::refit(std::span<const MovingBox> vertices, bool still) {
@@ -163,10 +171,13 @@ void BoxTree::refit(std::span<const MovingBox> vertices, bool still) {
   fit(vertices, [&](int level, Index g) { return (1u << lanes_used(level, g)) - 1; });
 }
 
-void BoxTree::refit_moved(std::span<const MovingBox> vertices, std::span<const std::uint8_t> moved) {
+void BoxTree::refit_moved(std::span<const MovingBox> vertices,
+                          std::span<const std::uint8_t> moved) {
   if (items() == 0) return;
   const LevelMasks lanes = any_moved(moved);
-  fit(vertices, [&](int level, Index g) { return Mask{lanes[static_cast<std::size_t>(level)][static_cast<std::size_t>(g)]}; });
+  fit(vertices, [&](int level, Index g) {
+    return Mask{lanes[static_cast<std::size_t>(level)][static_cast<std::size_t>(g)]};
+  });
 }
 
 }  // namespace taut::detail

@@ -1,8 +1,9 @@
 #pragma once
-// Exact sums and products of doubles: a number is kept as a sum of doubles that do not overlap (J. R. Shewchuk 1997,
-// contact/intersection.h).
+// Exact sums and products of doubles: a number is kept as a sum of doubles that do not overlap (J.
+// R. Shewchuk 1997, contact/intersection.h).
 //
-// Exact unless something overflows or a product's rounding error falls below 2^-1074. Private to contact. Slow, and rarely needed.
+// Exact unless something overflows or a product's rounding error falls below 2^-1074. Private to
+// contact. Slow, and rarely needed.
 
 #include <cmath>
 #include <vector>

@@ -5,7 +5,8 @@
 #include "taut/base/simd.h"
 
 #if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC diagnostic ignored "-Wpsabi"  // about calls that pass vectors: here all of them are inlined
+#pragma GCC diagnostic ignored \
+    "-Wpsabi"  // about calls that pass vectors: here all of them are inlined
 #endif
 
 namespace taut::detail {
@@ -36,7 +37,8 @@ template <bool still>
 TAUT_ALWAYS_INLINE Integers near_lane(const BoxGroup& b, const BoxGroup& a, int l) {
   Integers both = ~Integers{};
   for (int i = 0; i < 3; ++i) {
-    Integers below = load<Floats>(b.low[0][i]) <= a.high[0][i][l], above = load<Floats>(b.high[0][i]) >= a.low[0][i][l];
+    Integers below = load<Floats>(b.low[0][i]) <= a.high[0][i][l],
+             above = load<Floats>(b.high[0][i]) >= a.low[0][i][l];
     if constexpr (!still) {
       below |= load<Floats>(b.low[1][i]) <= a.high[1][i][l];
       above |= load<Floats>(b.high[1][i]) >= a.low[1][i][l];
@@ -48,43 +50,50 @@ TAUT_ALWAYS_INLINE Integers near_lane(const BoxGroup& b, const BoxGroup& a, int 
 
 template <bool still>
 TAUT_ALWAYS_INLINE void boxes(const BoxGroup& mine, const BoxGroup& theirs, std::uint8_t* masks) {
-  for (int l = 0; l < 8; ++l) masks[l] = static_cast<std::uint8_t>(bits_of(near_lane<still>(theirs, mine, l)));
+  for (int l = 0; l < 8; ++l)
+    masks[l] = static_cast<std::uint8_t>(bits_of(near_lane<still>(theirs, mine, l)));
 }
 
 template <int my_corners, int their_corners, bool still>
-TAUT_ALWAYS_INLINE Mask leaves(const LeafGroup& mine, const LeafGroup& theirs, const BoxGroup& parent, int lane, Mask lanes,
-                               std::uint8_t* masks) {
+TAUT_ALWAYS_INLINE Mask leaves(const LeafGroup& mine, const LeafGroup& theirs,
+                               const BoxGroup& parent, int lane, Mask lanes, std::uint8_t* masks) {
   lanes &= bits_of(near_lane<still>(*mine.boxes, parent, lane));
   for (Mask left = lanes; left != 0; left &= left - 1) {
     const int l = std::countr_zero(left);
     Integers both = near_lane<still>(*theirs.boxes, *mine.boxes, l);
     for (int k = 0; k < their_corners; ++k)
-      for (int i = 0; i < my_corners; ++i) both &= load<Integers>(theirs.corners[k].corner) != mine.corners[i].corner[l];
+      for (int i = 0; i < my_corners; ++i)
+        both &= load<Integers>(theirs.corners[k].corner) != mine.corners[i].corner[l];
     masks[l] = static_cast<std::uint8_t>(bits_of(both));
   }
   return lanes;
 }
 
 template <int my_corners, int their_corners>
-TAUT_ALWAYS_INLINE Mask leaves(const LeafGroup& mine, const LeafGroup& theirs, const BoxGroup& parent, int lane, Mask lanes, bool still,
+TAUT_ALWAYS_INLINE Mask leaves(const LeafGroup& mine, const LeafGroup& theirs,
+                               const BoxGroup& parent, int lane, Mask lanes, bool still,
                                std::uint8_t* masks) {
   return still ? leaves<my_corners, their_corners, true>(mine, theirs, parent, lane, lanes, masks)
                : leaves<my_corners, their_corners, false>(mine, theirs, parent, lane, lanes, masks);
 }
 
-TAUT_MULTIVERSION_AVX2 void overlaps_of_boxes(const BoxGroup& mine, const BoxGroup& theirs, bool still, std::uint8_t* masks) {
+TAUT_MULTIVERSION_AVX2 void overlaps_of_boxes(const BoxGroup& mine, const BoxGroup& theirs,
+                                              bool still, std::uint8_t* masks) {
   still ? boxes<true>(mine, theirs, masks) : boxes<false>(mine, theirs, masks);
 }
-TAUT_MULTIVERSION_AVX2 Mask overlaps_1_3(const LeafGroup& mine, const LeafGroup& theirs, const BoxGroup& parent, int lane, Mask lanes,
-                                         bool still, std::uint8_t* masks) {
+TAUT_MULTIVERSION_AVX2 Mask overlaps_1_3(const LeafGroup& mine, const LeafGroup& theirs,
+                                         const BoxGroup& parent, int lane, Mask lanes, bool still,
+                                         std::uint8_t* masks) {
   return leaves<1, 3>(mine, theirs, parent, lane, lanes, still, masks);
 }
-TAUT_MULTIVERSION_AVX2 Mask overlaps_2_2(const LeafGroup& mine, const LeafGroup& theirs, const BoxGroup& parent, int lane, Mask lanes,
-                                         bool still, std::uint8_t* masks) {
+TAUT_MULTIVERSION_AVX2 Mask overlaps_2_2(const LeafGroup& mine, const LeafGroup& theirs,
+                                         const BoxGroup& parent, int lane, Mask lanes, bool still,
+                                         std::uint8_t* masks) {
   return leaves<2, 2>(mine, theirs, parent, lane, lanes, still, masks);
 }
-TAUT_MULTIVERSION_AVX2 Mask overlaps_2_3(const LeafGroup& mine, const LeafGroup& theirs, const BoxGroup& parent, int lane, Mask lanes,
-                                         bool still, std::uint8_t* masks) {
+TAUT_MULTIVERSION_AVX2 Mask overlaps_2_3(const LeafGroup& mine, const LeafGroup& theirs,
+                                         const BoxGroup& parent, int lane, Mask lanes, bool still,
+                                         std::uint8_t* masks) {
   return leaves<2, 3>(mine, theirs, parent, lane, lanes, still, masks);
 }
 
@@ -95,18 +104,18 @@ void group_overlaps(const BoxGroup& mine, const BoxGroup& theirs, bool still, st
 }
 
 template <>
-Mask leaf_overlaps<1, 3>(const LeafGroup& mine, const LeafGroup& theirs, const BoxGroup& parent, int lane, Mask lanes, bool still,
-                         std::uint8_t* masks) {
+Mask leaf_overlaps<1, 3>(const LeafGroup& mine, const LeafGroup& theirs, const BoxGroup& parent,
+                         int lane, Mask lanes, bool still, std::uint8_t* masks) {
   return overlaps_1_3(mine, theirs, parent, lane, lanes, still, masks);
 }
 template <>
-Mask leaf_overlaps<2, 2>(const LeafGroup& mine, const LeafGroup& theirs, const BoxGroup& parent, int lane, Mask lanes, bool still,
-                         std::uint8_t* masks) {
+Mask leaf_overlaps<2, 2>(const LeafGroup& mine, const LeafGroup& theirs, const BoxGroup& parent,
+                         int lane, Mask lanes, bool still, std::uint8_t* masks) {
   return overlaps_2_2(mine, theirs, parent, lane, lanes, still, masks);
 }
 template <>
-Mask leaf_overlaps<2, 3>(const LeafGroup& mine, const LeafGroup& theirs, const BoxGroup& parent, int lane, Mask lanes, bool still,
-                         std::uint8_t* masks) {
+Mask leaf_overlaps<2, 3>(const LeafGroup& mine, const LeafGroup& theirs, const BoxGroup& parent,
+                         int lane, Mask lanes, bool still, std::uint8_t* masks) {
   return overlaps_2_3(mine, theirs, parent, lane, lanes, still, masks);
 }
 

@@ -38,8 +38,9 @@ int orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
     determinant += ad[i] * (plus - minus);
     size += std::abs(ad[i]) * (std::abs(plus) + std::abs(minus));
   }
-  // Each of the six products of three differences has passed at most 8 roundings: three differences, two products, a subtraction, two
-  // additions (the first adds to 0 exactly). `size` is too small by at most as much, so 8 u (1 + 8 u) size would do.
+  // Each of the six products of three differences has passed at most 8 roundings: three
+  // differences, two products, a subtraction, two additions (the first adds to 0 exactly). `size`
+  // is too small by at most as much, so 8 u (1 + 8 u) size would do.
   const double error = 10.0 * u * size + underflow_bound;
   if (determinant > error) return 1;
   if (determinant < -error) return -1;

@@ -1,9 +1,10 @@
 #pragma once
-// All pairs of overlapping items of two box trees, or of one with itself, for contact/broad_phase.h. Private to contact.
+// All pairs of overlapping items of two box trees, or of one with itself, for
+// contact/broad_phase.h. Private to contact.
 //
-// Each block of 64 items of the first tree, eight groups of eight, descends through the second down to the blocks that are near it; then
-// groups meet groups, and items items. Each part of the result is that of a few blocks, so that parts do not depend on the number of
-// threads.
+// Each block of 64 items of the first tree, eight groups of eight, descends through the second down
+// to the blocks that are near it; then groups meet groups, and items items. Each part of the result
+// is that of a few blocks, so that parts do not depend on the number of threads.
 
 #include <bit>
 #include <limits>
@@ -15,15 +16,16 @@
 
 namespace taut::detail {
 
-// Neighbouring chunks cost alike (crumpled here, flat there), so threads, which get runs of them, take them in a stride across the whole
-// surface.
+// Neighbouring chunks cost alike (crumpled here, flat there), so threads, which get runs of them,
+// take them in a stride across the whole surface.
 inline Index strided(Index k, Index count) {
   Index stride = static_cast<Index>(0.618 * count) | 1;
   while (std::gcd(stride, count) != 1) stride += 2;
   return static_cast<Index>(static_cast<Offset>(k) * stride % count);
 }
 
-// Eight groups of the second tree, and for each of eight groups of the first one those of them that it may meet.
+// Eight groups of the second tree, and for each of eight groups of the first one those of them that
+// it may meet.
 struct Block {
   Index group;
   std::array<std::uint8_t, 8> masks;
@@ -33,8 +35,13 @@ struct Block {
 template <int first_corners, int second_corners, class Pair, class MakePair>
 class TreeQuery {
  public:
-  TreeQuery(const BoxTree& first, const BoxTree& second, std::span<const std::uint8_t> moved, const MakePair& make_pair)
-      : first_(first), second_(second), itself_(&first == &second), still_(first.still()), make_pair_(make_pair) {
+  TreeQuery(const BoxTree& first, const BoxTree& second, std::span<const std::uint8_t> moved,
+            const MakePair& make_pair)
+      : first_(first),
+        second_(second),
+        itself_(&first == &second),
+        still_(first.still()),
+        make_pair_(make_pair) {
     if (moved.empty()) return;
     moved_second_ = second.any_moved(moved);
     moved_first_ = itself_ ? moved_second_ : first.any_moved(moved);
@@ -66,17 +73,20 @@ class TreeQuery {
  private:
   bool restricted() const { return !moved_second_.empty(); }
 
-  // Lanes of `group` with what is not before `other`, on the level of both: in a tree with itself, those met this one on their own way.
+  // Lanes of `group` with what is not before `other`, on the level of both: in a tree with itself,
+  // those met this one on their own way.
   static Mask from(Index other, Index group) {
     const Index lane = other - 8 * group;
     return lane <= 0 ? 0xffu : lane < 8 ? 0xffu << lane : 0u;
   }
 
-  // The groups of the second tree's level 1 that have something near group p of the first one's, in ascending order.
+  // The groups of the second tree's level 1 that have something near group p of the first one's, in
+  // ascending order.
   void find_blocks(Index p, std::vector<Block>& blocks) const {
     blocks.clear();
     const bool none_moved = restricted() && moved_first_[1][p] == 0;
-    const MovingBox around = first_.height() > 2 ? box_of_lane(first_.group(2, p / 8), p % 8) : everything();
+    const MovingBox around =
+        first_.height() > 2 ? box_of_lane(first_.group(2, p / 8), p % 8) : everything();
     struct Visit {
       int level;
       Index group;
@@ -89,7 +99,8 @@ class TreeQuery {
       if (visit.level == 1) {
         Block& block = blocks.emplace_back();
         block.group = visit.group;
-        group_overlaps(first_.group(1, p), second_.group(1, visit.group), still_, block.masks.data());
+        group_overlaps(first_.group(1, p), second_.group(1, visit.group), still_,
+                       block.masks.data());
         continue;
       }
       Mask mask = overlapping(second_.group(visit.level, visit.group), around, still_);
@@ -110,14 +121,17 @@ class TreeQuery {
     return {{box, box}};
   }
 
-  // The items of group q with those of the group g of the second tree that is in lane `below` of `parent`.
+  // The items of group q with those of the group g of the second tree that is in lane `below` of
+  // `parent`.
   void meet(Index q, Index parent, int below, std::vector<Pair>& pairs) const {
     const Index g = 8 * parent + below;
     Mask lanes = 0xff;
-    if (itself_ && restricted()) lanes &= moved_first_[0][q];  // pairs with another lane are found from their other item
+    // pairs with another lane are found from their other item
+    if (itself_ && restricted()) lanes &= moved_first_[0][q];
     std::array<std::uint8_t, 8> masks;
-    lanes = leaf_overlaps<first_corners, second_corners>(first_.leaf(q), second_.leaf(g), second_.group(1, parent), below, lanes, still_,
-                                                         masks.data());
+    lanes = leaf_overlaps<first_corners, second_corners>(first_.leaf(q), second_.leaf(g),
+                                                         second_.group(1, parent), below, lanes,
+                                                         still_, masks.data());
     for (; lanes != 0; lanes &= lanes - 1) {
       const int lane = std::countr_zero(lanes);
       Mask mask = masks[lane];
@@ -129,7 +143,9 @@ class TreeQuery {
       }
       if (first_.solid(0, q) >> lane & 1) mask &= ~second_.solid(0, g);
       const Index slot = 8 * q + lane;
-      for (; mask != 0; mask &= mask - 1) pairs.push_back(make_pair_(first_.item(slot), second_.item(8 * g + std::countr_zero(mask))));
+      for (; mask != 0; mask &= mask - 1)
+        pairs.push_back(
+            make_pair_(first_.item(slot), second_.item(8 * g + std::countr_zero(mask))));
     }
   }
 
@@ -150,9 +166,11 @@ inline Index parts_of(const BoxTree& first) {
 
 // use(part, pairs) for each part, from several threads.
 template <int first_corners, int second_corners, class Pair, class MakePair, class Use>
-void query(const BoxTree& first, const BoxTree& second, std::span<const std::uint8_t> moved, const MakePair& make_pair, const Use& use) {
+void query(const BoxTree& first, const BoxTree& second, std::span<const std::uint8_t> moved,
+           const MakePair& make_pair, const Use& use) {
   if (first.items() == 0 || second.items() == 0) return;
-  const TreeQuery<first_corners, second_corners, Pair, MakePair> tree_query(first, second, moved, make_pair);
+  const TreeQuery<first_corners, second_corners, Pair, MakePair> tree_query(first, second, moved,
+                                                                            make_pair);
   const Index blocks = (first.groups() + 7) / 8, parts = parts_of(first);
   parallel_for(parts, 1, [&](Index begin, Index end) {
     std::vector<Block> near;
@@ -160,7 +178,9 @@ void query(const BoxTree& first, const BoxTree& second, std::span<const std::uin
     for (Index k = begin; k < end; ++k) {
       const Index part = strided(k, parts);
       pairs.clear();
-      for (Index p = part * blocks_per_part; p < std::min(blocks, (part + 1) * blocks_per_part); ++p) tree_query.run(p, near, pairs);
+      for (Index p = part * blocks_per_part; p < std::min(blocks, (part + 1) * blocks_per_part);
+           ++p)
+        tree_query.run(p, near, pairs);
       use(part, std::span<const Pair>(pairs));
     }
   });

@@ -1,6 +1,6 @@
 #pragma once
-// A plain array that begins on a cache line, or where it is large on a large page, and is not initialised: touching hundreds of megabytes
-// only to overwrite them costs more than the solves.
+// A plain array that begins on a cache line, or where it is large on a large page, and is not
+// initialised: touching hundreds of megabytes only to overwrite them costs more than the solves.
 
 #include <memory>
 

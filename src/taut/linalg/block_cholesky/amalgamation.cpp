@@ -8,13 +8,16 @@ namespace taut {
 
 namespace {
 
-// Work of a front in units of a SIMD multiply-add of its products (measured on AVX2 in single precision; results depend on it little).
+// Work of a front in units of a SIMD multiply-add of its products (measured on AVX2 in single
+// precision; results depend on it little).
 double work(double columns, double rows) {
   constexpr double per_panel_entry = 6.0;   // zeroed, assembled, written, and read by every solve
   constexpr double per_update_entry = 4.0;  // written, read, added
   constexpr double per_front = 8000.0;
-  const double multiply_adds = columns * columns * columns / 6.0 + columns * rows * (columns + rows) / 2.0;
-  return multiply_adds + 0.5 * per_panel_entry * columns * (columns + 2.0 * rows) + 0.5 * per_update_entry * rows * rows + per_front;
+  const double multiply_adds =
+      columns * columns * columns / 6.0 + columns * rows * (columns + rows) / 2.0;
+  return multiply_adds + 0.5 * per_panel_entry * columns * (columns + 2.0 * rows) +
+         0.5 * per_update_entry * rows * rows + per_front;
 }
 
 // A group while groups are merged: its columns are a list of ranges of fundamental supernodes.
@@ -22,12 +25,14 @@ struct Group {
   Index begin = 0, end = 0;  // its own columns
   Index parent = -1;
   double columns = 0.0, rows = 0.0;  // unknowns: pivots, and below them
-  Index last_merged = -1;            // children whose columns come before its own: a list through `next_merged`
+  // children whose columns come before its own: a list through `next_merged`
+  Index last_merged = -1;
   Index next_merged = -1;
   Index merged_into = -1;
 };
 
-std::vector<Group> fundamental_groups(std::span<const Index> parent, std::span<const Index> count, std::span<const Index> weight) {
+std::vector<Group> fundamental_groups(std::span<const Index> parent, std::span<const Index> count,
+                                      std::span<const Index> weight) {
   const Index n = static_cast<Index>(parent.size());
   std::vector<Group> groups;
   std::vector<Index> group_of(parent.size());
@@ -48,15 +53,17 @@ std::vector<Group> fundamental_groups(std::span<const Index> parent, std::span<c
 }
 
 void merge_into_parents(std::vector<Group>& groups) {
-  // Children come before parents, so a group is complete when it is looked at; a parent takes its children from the last (which borders on
-  // it) to the first.
+  // Children come before parents, so a group is complete when it is looked at; a parent takes its
+  // children from the last (which borders on it) to the first.
   const Index n = static_cast<Index>(groups.size());
   std::vector<Index> first_child(groups.size(), -1), next_sibling(groups.size(), -1);
   for (Index g = 0; g < n; ++g) {
     Group& p = groups[g];
     for (Index c = first_child[g]; c != -1; c = next_sibling[c]) {
       Group& child = groups[c];
-      if (work(child.columns + p.columns, p.rows) >= work(child.columns, child.rows) + work(p.columns, p.rows)) continue;
+      if (work(child.columns + p.columns, p.rows) >=
+          work(child.columns, child.rows) + work(p.columns, p.rows))
+        continue;
       p.columns += child.columns;
       child.merged_into = g;
       child.next_merged = p.last_merged;
@@ -85,7 +92,8 @@ void append_columns(const std::vector<Group>& groups, Index g, std::vector<Index
 
 }  // namespace
 
-ColumnGroups group_columns(std::span<const Index> parent, std::span<const Index> count, std::span<const Index> weight) {
+ColumnGroups group_columns(std::span<const Index> parent, std::span<const Index> count,
+                           std::span<const Index> weight) {
   std::vector<Group> groups = fundamental_groups(parent, count, weight);
   merge_into_parents(groups);
 

@@ -14,8 +14,9 @@ struct ColumnGroups {
   std::vector<Index> parent;  // of the groups; greater than the group, or -1
 };
 
-// Columns are numbered in a postorder of their tree `parent`; count[j] = unknowns of column j of L with its diagonal block, weight[j] those
-// of the diagonal block.
-ColumnGroups group_columns(std::span<const Index> parent, std::span<const Index> count, std::span<const Index> weight);
+// Columns are numbered in a postorder of their tree `parent`; count[j] = unknowns of column j of L
+// with its diagonal block, weight[j] those of the diagonal block.
+ColumnGroups group_columns(std::span<const Index> parent, std::span<const Index> count,
+                           std::span<const Index> weight);
 
 }  // namespace taut

@@ -28,16 +28,19 @@ AnalyzedGraph analyzed_graph(const BlockPattern& pattern, std::span<const std::u
   return result;
 }
 
-UnanalyzedBlocks unanalyzed_blocks(const BlockPattern& pattern, std::span<const std::uint8_t> mask, std::span<const Parallelogram> replaceable) {
+UnanalyzedBlocks unanalyzed_blocks(const BlockPattern& pattern, std::span<const std::uint8_t> mask,
+                                   std::span<const Parallelogram> replaceable) {
   std::vector<std::uint8_t> is_replaceable(mask.size(), 0);
-  for (const Parallelogram& p : replaceable) is_replaceable[p.block] = is_replaceable[p.opposite] = 1;
+  for (const Parallelogram& p : replaceable)
+    is_replaceable[p.block] = is_replaceable[p.opposite] = 1;
   UnanalyzedBlocks result;
   result.row_start.push_back(0);
   for (Index i = 0; i < pattern.rows(); ++i) {
     for (const std::uint8_t last : {0, 1}) {
       if (last) result.row_split.push_back(static_cast<Index>(result.value.size()));
       for (Index k = pattern.row_start[i]; k < pattern.row_start[i + 1]; ++k)
-        if (!mask[k] && k != pattern.diagonal[i] && is_replaceable[k] == last) result.value.push_back(pattern.block_offset[k]);
+        if (!mask[k] && k != pattern.diagonal[i] && is_replaceable[k] == last)
+          result.value.push_back(pattern.block_offset[k]);
     }
     result.row_start.push_back(static_cast<Index>(result.value.size()));
   }
@@ -45,12 +48,14 @@ UnanalyzedBlocks unanalyzed_blocks(const BlockPattern& pattern, std::span<const 
 }
 
 std::string AnalyzedGraph::mismatch(const BlockPattern& pattern) const {
-  if (pattern.rows() != rows) return fmt::format("the matrix has {} nodes, the analysed one had {}", pattern.rows(), rows);
+  if (pattern.rows() != rows)
+    return fmt::format("the matrix has {} nodes, the analysed one had {}", pattern.rows(), rows);
   std::size_t n = 0;  // node[n]: the next analysed node
   for (Index i = 0; i < rows; ++i) {
     const bool analyzed = n < node.size() && node[n] == i;
     if (pattern.dim(i) > (analyzed ? weight[n] : 0))
-      return fmt::format("node {} has {} unknowns, in the analysed matrix it had {}", i, pattern.dim(i), analyzed ? weight[n] : 0);
+      return fmt::format("node {} has {} unknowns, in the analysed matrix it had {}", i,
+                         pattern.dim(i), analyzed ? weight[n] : 0);
     if (!analyzed) continue;
     Index e = graph.start[n];
     const Index end = graph.start[n + 1];
@@ -58,7 +63,8 @@ std::string AnalyzedGraph::mismatch(const BlockPattern& pattern) const {
       const Index j = pattern.column[k];
       if (j == i || pattern.dim(j) == 0) continue;
       while (e < end && node[graph.neighbour[e]] < j) ++e;
-      if (e == end || node[graph.neighbour[e]] != j) return fmt::format("there was no block ({}, {}) in the analysed matrix", i, j);
+      if (e == end || node[graph.neighbour[e]] != j)
+        return fmt::format("there was no block ({}, {}) in the analysed matrix", i, j);
     }
     ++n;
   }

@@ -1,4 +1,5 @@
-// NumericFactor: a front's columns from the blocks gathered from A, less what condensed nodes leave (condensation.h).
+// NumericFactor: a front's columns from the blocks gathered from A, less what condensed nodes leave
+// (condensation.h).
 
 #include <algorithm>
 
@@ -12,36 +13,44 @@ namespace taut {
 
 namespace {
 
-constexpr Index nodes_per_task = 8, entries_per_task = 1 << 15;  // of a front that several threads share
+// of a front that several threads share
+constexpr Index nodes_per_task = 8, entries_per_task = 1 << 15;
 
 // Block e, A_jk, less the products Uᵀ_ij U_ik: row by row, the fourth number of each nobody's.
 template <class T>
-TAUT_ALWAYS_INLINE void take_block(const FactorLayout& layout, const T* gathered, Index e, const T* block, typename Quad<T>::Type (&row)[3]) {
+TAUT_ALWAYS_INLINE void take_block(const FactorLayout& layout, const T* gathered, Index e,
+                                   const T* block, typename Quad<T>::Type (&row)[3]) {
   for (Index j = 0; j < 3; ++j) row[j] = quad(block + 3 * j);
   if (layout.condensed == 0) return;
   const CondensedPair* stop = layout.pair.data() + layout.pair_start[e + 1];
   for (const CondensedPair* pair = layout.pair.data() + layout.pair_start[e]; pair < stop; ++pair) {
-    const T *left = gathered + Offset{9} * pair->first, *right = gathered + Offset{9} * pair->second;
+    const T *left = gathered + Offset{9} * pair->first,
+            *right = gathered + Offset{9} * pair->second;
     for (Index r = 0; r < 3; ++r)
       for (Index j = 0; j < 3; ++j) row[j] -= left[3 * r + j] * quad(right + 3 * r);
   }
 }
 
-// A block, `width` numbers a row, whose rows are columns of the panel; of one on the diagonal the lower triangle.
+// A block, `width` numbers a row, whose rows are columns of the panel; of one on the diagonal the
+// lower triangle.
 template <class T, class From>
-TAUT_ALWAYS_INLINE void put_block(const BlockPlace& place, const From* block, Index width, Index rows, Index columns, bool is_diagonal,
-                                  T* column, Index slab_rows) {
+TAUT_ALWAYS_INLINE void put_block(const BlockPlace& place, const From* block, Index width,
+                                  Index rows, Index columns, bool is_diagonal, T* column,
+                                  Index slab_rows) {
   for (Index i = 0; i < rows; ++i) {
-    T* to = column + (i < place.rows_in_slab ? place.offset + i : place.next_slab + i - place.rows_in_slab);
-    for (Index j = 0; j < (is_diagonal ? i + 1 : columns); ++j) to[j * slab_rows] = static_cast<T>(block[j * width + i]);
+    T* to = column +
+            (i < place.rows_in_slab ? place.offset + i : place.next_slab + i - place.rows_in_slab);
+    for (Index j = 0; j < (is_diagonal ? i + 1 : columns); ++j)
+      to[j * slab_rows] = static_cast<T>(block[j * width + i]);
   }
 }
 
-// The columns of plain nodes at places begin ... end-1, up to the first one that is not plain or has a block with one that is not, whose other
-// blocks are done. Returns its place, or `end`.
+// The columns of plain nodes at places begin ... end-1, up to the first one that is not plain or
+// has a block with one that is not, whose other blocks are done. Returns its place, or `end`.
 template <class T>
-TAUT_ALWAYS_INLINE Index assemble_plain(const FactorLayout& layout, const std::uint8_t* is_plain, const T* gathered, Index begin, Index end,
-                                        Index slab_rows, T* panel) {
+TAUT_ALWAYS_INLINE Index assemble_plain(const FactorLayout& layout, const std::uint8_t* is_plain,
+                                        const T* gathered, Index begin, Index end, Index slab_rows,
+                                        T* panel) {
   using Four = typename Quad<T>::Type;
   for (Index k = begin; k < end; ++k) {
     if (!is_plain[k]) return k;
@@ -56,7 +65,8 @@ TAUT_ALWAYS_INLINE Index assemble_plain(const FactorLayout& layout, const std::u
         if (place.place != k && place.rows_in_slab >= 3) {
           for (Index j = 0; j < 3; ++j) put_three(row[j], column + place.offset + j * slab_rows);
         } else {
-          put_block(place, reinterpret_cast<const T*>(row), 4, 3, 3, place.place == k, column, slab_rows);
+          put_block(place, reinterpret_cast<const T*>(row), 4, 3, 3, place.place == k, column,
+                    slab_rows);
         }
       } else {
         are_plain = false;
@@ -68,16 +78,19 @@ TAUT_ALWAYS_INLINE Index assemble_plain(const FactorLayout& layout, const std::u
   return end;
 }
 
-TAUT_MULTIVERSION Index assemble_some(const FactorLayout& layout, const std::uint8_t* is_plain, const float* gathered, Index begin, Index end,
+TAUT_MULTIVERSION Index assemble_some(const FactorLayout& layout, const std::uint8_t* is_plain,
+                                      const float* gathered, Index begin, Index end,
                                       Index slab_rows, float* panel) {
   return assemble_plain(layout, is_plain, gathered, begin, end, slab_rows, panel);
 }
-TAUT_MULTIVERSION Index assemble_some(const FactorLayout& layout, const std::uint8_t* is_plain, const double* gathered, Index begin, Index end,
+TAUT_MULTIVERSION Index assemble_some(const FactorLayout& layout, const std::uint8_t* is_plain,
+                                      const double* gathered, Index begin, Index end,
                                       Index slab_rows, double* panel) {
   return assemble_plain(layout, is_plain, gathered, begin, end, slab_rows, panel);
 }
 
-// B := (first `rows` columns of left)ᵀ B (first `columns` columns of right); null: the identity. B: 3x3 row-major.
+// B := (first `rows` columns of left)ᵀ B (first `columns` columns of right); null: the identity. B:
+// 3x3 row-major.
 void project(const Mat3* left, Index rows, const Mat3* right, Index columns, double* block) {
   using Block = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
   Eigen::Map<Block> b(block);
@@ -103,27 +116,35 @@ void NumericFactor<T>::assemble(const Front& front, T* panel, bool shared) const
   const Index nodes = front.last_node - front.first_node;
   if (shared) {
     const Index pieces = static_cast<Index>((size + entries_per_task - 1) / entries_per_task);
-    parallel_for(pieces, 1, [&](Index begin, Index end) { clear(Offset{entries_per_task} * begin, std::min(size, Offset{entries_per_task} * end)); });
+    parallel_for(pieces, 1, [&](Index begin, Index end) {
+      clear(Offset{entries_per_task} * begin, std::min(size, Offset{entries_per_task} * end));
+    });
     parallel_for(nodes, nodes_per_task, assemble_nodes);
   } else {
     clear(0, size);
     assemble_nodes(0, nodes);
   }
-  for (Index j = 0; j < front.shape.padding; ++j) panel[front.shape.panel_offset(j / slab_rows) + Offset{j} * slab_rows + j % slab_rows] = T(1);
+  for (Index j = 0; j < front.shape.padding; ++j)
+    panel[front.shape.panel_offset(j / slab_rows) + Offset{j} * slab_rows + j % slab_rows] = T(1);
 }
 
-// Of the node at place k, the blocks that assemble_plain() leaves: of any size, projected where a node has a basis of its own.
+// Of the node at place k, the blocks that assemble_plain() leaves: of any size, projected where a
+// node has a basis of its own.
 template <class T>
 void NumericFactor<T>::assemble_projected(const Front& front, Index k, T* panel) const {
-  const Index slab_rows = front.shape.slab_rows, dim = dim_[k], weight = layout_.node_weight[k], basis = basis_of_[k];
-  const auto set_one = [&](Index j) { panel[front.shape.panel_offset(j / slab_rows) + Offset{j} * slab_rows + j % slab_rows] = T(1); };
+  const Index slab_rows = front.shape.slab_rows, dim = dim_[k], weight = layout_.node_weight[k],
+              basis = basis_of_[k];
+  const auto set_one = [&](Index j) {
+    panel[front.shape.panel_offset(j / slab_rows) + Offset{j} * slab_rows + j % slab_rows] = T(1);
+  };
   for (Index j = dim; j < weight; ++j) set_one(layout_.node_column[k] + j);
   if (dim == 0) return;
   const T* block = gathered_.data() + layout_.gathered_start[k];
   T* column = panel + Offset{layout_.node_column[k]} * slab_rows;
   for (Index e = layout_.block_start[k]; e < layout_.block_start[k + 1]; ++e) {
     const BlockPlace& place = layout_.block[e];
-    const Index other = place.place, other_dim = dim_[other], other_basis = basis_of_[other], width = layout_.node_weight[other];
+    const Index other = place.place, other_dim = dim_[other], other_basis = basis_of_[other],
+                width = layout_.node_weight[other];
     if (!is_plain_[k] || !is_plain_[other]) {
       T taken[12];
       const T* numbers = block;
@@ -138,7 +159,8 @@ void NumericFactor<T>::assemble_projected(const Front& front, Index k, T* panel)
       } else {
         double projected[9];
         for (Index j = 0; j < 9; ++j) projected[j] = static_cast<double>(numbers[j]);
-        project(basis >= 0 ? &basis_[basis] : nullptr, dim, other_basis >= 0 ? &basis_[other_basis] : nullptr, other_dim, projected);
+        project(basis >= 0 ? &basis_[basis] : nullptr, dim,
+                other_basis >= 0 ? &basis_[other_basis] : nullptr, other_dim, projected);
         put_block(place, projected, 3, other_dim, dim, other == k, column, slab_rows);
       }
     }

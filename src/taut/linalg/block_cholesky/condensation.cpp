@@ -13,7 +13,8 @@ namespace {
 
 // A node of d neighbours costs d (d + 1) / 2 products of blocks, and joins d nodes to each other.
 constexpr Index most_neighbours = 6;
-// At most so many are as good as fewer: the borders of a grid come in turn with what is inside, so that there is one pattern throughout.
+// At most so many are as good as fewer: the borders of a grid come in turn with what is inside, so
+// that there is one pattern throughout.
 constexpr Index few_neighbours = 4;
 // Of all nodes: with fewer than one in so many, the order of elimination is better left alone.
 constexpr Index least_share = 4;
@@ -27,7 +28,8 @@ std::vector<Index> condensed_nodes(const AnalyzedGraph& all) {
   const auto neighbours = [&](Index i) { return graph.start[i + 1] - graph.start[i]; };
   std::vector<Index> order(static_cast<std::size_t>(nodes));
   std::iota(order.begin(), order.end(), 0);
-  std::ranges::stable_sort(order, {}, [&](Index i) { return std::max(few_neighbours, neighbours(i)); });
+  std::ranges::stable_sort(order, {},
+                           [&](Index i) { return std::max(few_neighbours, neighbours(i)); });
 
   std::vector<Index> chosen;
   std::vector<std::uint8_t> is_taken(static_cast<std::size_t>(nodes), 0);
@@ -72,7 +74,9 @@ CondensedGraph condensed_graph(AnalyzedGraph all, std::vector<Index> condensed) 
         if (graph.neighbour[f] != i) row.push_back({number[graph.neighbour[f]], -1});
     }
     // A's own block, if there is one, before what arises.
-    std::ranges::sort(row, [](const auto& a, const auto& b) { return a.first != b.first ? a.first < b.first : a.second > b.second; });
+    std::ranges::sort(row, [](const auto& a, const auto& b) {
+      return a.first != b.first ? a.first < b.first : a.second > b.second;
+    });
     for (std::size_t k = 0; k < row.size(); ++k) {
       if (k > 0 && row[k].first == row[k - 1].first) continue;
       rest.graph.neighbour.push_back(row[k].first);
@@ -93,7 +97,9 @@ std::vector<Index> assign_condensed(CondensedGraph& graph, const SupernodeTree& 
     Index first = std::numeric_limits<Index>::max();
     for (Index e = graph.all.graph.start[i]; e < graph.all.graph.start[i + 1]; ++e)
       first = std::min(first, place_of[graph.all.node[graph.all.graph.neighbour[e]]]);
-    owned.push_back({static_cast<Index>(std::ranges::upper_bound(tree.first, first) - tree.first.begin()) - 1, i});
+    owned.push_back(
+        {static_cast<Index>(std::ranges::upper_bound(tree.first, first) - tree.first.begin()) - 1,
+         i});
   }
   std::ranges::sort(owned);
   std::vector<Index> owner;

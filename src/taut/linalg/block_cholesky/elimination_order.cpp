@@ -11,15 +11,18 @@ namespace {
 // Thousandths. Beyond 600 METIS may return orders that are no dissection any more.
 constexpr int imbalances[] = {default_imbalance, 400, 600};
 
-double factor_flops(const NodeGraph& graph, std::span<const Index> order, std::span<const Index> weight) {
+double factor_flops(const NodeGraph& graph, std::span<const Index> order,
+                    std::span<const Index> weight) {
   std::vector<Index> ordered_weight;
   for (const Index i : order) ordered_weight.push_back(weight[i]);
   const NodeGraph ordered = renumbered(graph, order);
   const std::vector<Index> parent = elimination_tree(ordered);
-  const std::vector<Index> count = column_counts(ordered, parent, postorder(parent), ordered_weight);
+  const std::vector<Index> count =
+      column_counts(ordered, parent, postorder(parent), ordered_weight);
   double flops = 0.0;
   for (std::size_t j = 0; j < count.size(); ++j)
-    for (Index r = 0; r < ordered_weight[j]; ++r) flops += static_cast<double>(count[j] - r) * (count[j] - r);
+    for (Index r = 0; r < ordered_weight[j]; ++r)
+      flops += static_cast<double>(count[j] - r) * (count[j] - r);
   return flops;
 }
 

@@ -17,7 +17,8 @@ NodeGraph renumbered(const NodeGraph& graph, std::span<const Index> order) {
   result.neighbour.reserve(graph.neighbour.size());
   result.start.push_back(0);
   for (const Index i : order) {
-    for (Index e = graph.start[i]; e < graph.start[i + 1]; ++e) result.neighbour.push_back(place[graph.neighbour[e]]);
+    for (Index e = graph.start[i]; e < graph.start[i + 1]; ++e)
+      result.neighbour.push_back(place[graph.neighbour[e]]);
     result.start.push_back(static_cast<Index>(result.neighbour.size()));
   }
   return result;
@@ -25,7 +26,8 @@ NodeGraph renumbered(const NodeGraph& graph, std::span<const Index> order) {
 
 std::vector<Index> elimination_tree(const NodeGraph& graph) {
   const Index n = graph.nodes();
-  std::vector<Index> parent(static_cast<std::size_t>(n), -1), ancestor(static_cast<std::size_t>(n), -1);
+  std::vector<Index> parent(static_cast<std::size_t>(n), -1),
+      ancestor(static_cast<std::size_t>(n), -1);
   for (Index j = 0; j < n; ++j)
     for (Index e = graph.start[j]; e < graph.start[j + 1]; ++e)
       for (Index i = graph.neighbour[e]; i != -1 && i < j;) {
@@ -62,14 +64,14 @@ std::vector<Index> postorder(std::span<const Index> parent) {
 
 namespace {
 
-// Finds the leaves of the row subtrees: row i's subtree is the path set from the columns j with A(i, j) != 0 up to i (Davis 2006,
-// section 4.4).
+// Finds the leaves of the row subtrees: row i's subtree is the path set from the columns j with
+// A(i, j) != 0 up to i (Davis 2006, section 4.4).
 struct RowSubtrees {
   std::span<const Index> first;  // first descendant of each node in postorder
   std::vector<Index> largest_first, previous_leaf, ancestor;
 
-  // Called for the columns j of row i in postorder. 0: j is no leaf; 1: the first leaf; 2: a further one, and `join` is where its path
-  // meets the others.
+  // Called for the columns j of row i in postorder. 0: j is no leaf; 1: the first leaf; 2: a
+  // further one, and `join` is where its path meets the others.
   int classify(Index i, Index j, Index& join) {
     if (first[j] <= largest_first[i]) return 0;
     largest_first[i] = first[j];
@@ -89,8 +91,8 @@ struct RowSubtrees {
 
 }  // namespace
 
-std::vector<Index> column_counts(const NodeGraph& graph, std::span<const Index> parent, std::span<const Index> post,
-                                 std::span<const Index> weight) {
+std::vector<Index> column_counts(const NodeGraph& graph, std::span<const Index> parent,
+                                 std::span<const Index> post, std::span<const Index> weight) {
   const std::size_t n = parent.size();
   std::vector<Index> count(n, 0), first(n, -1);
   for (std::size_t k = 0; k < n; ++k) {
@@ -98,7 +100,8 @@ std::vector<Index> column_counts(const NodeGraph& graph, std::span<const Index> 
     if (first[j] == -1) count[j] = weight[j];  // a leaf of the tree
     for (; j != -1 && first[j] == -1; j = parent[j]) first[j] = static_cast<Index>(k);
   }
-  RowSubtrees rows{first, std::vector<Index>(n, -1), std::vector<Index>(n, -1), std::vector<Index>(n)};
+  RowSubtrees rows{first, std::vector<Index>(n, -1), std::vector<Index>(n, -1),
+                   std::vector<Index>(n)};
   for (std::size_t i = 0; i < n; ++i) rows.ancestor[i] = static_cast<Index>(i);
   // count becomes what each column has more than its children together.
   for (const Index j : post) {

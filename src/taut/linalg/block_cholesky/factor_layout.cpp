@@ -9,8 +9,13 @@ namespace {
 
 class LayoutBuilder {
  public:
-  LayoutBuilder(const SupernodeTree& tree, const CondensedGraph& graph, std::span<const Index> condensed_at, const KernelSizes& sizes)
-      : tree_(tree), graph_(graph), condensed_at_(condensed_at), sizes_(sizes), condensed_(static_cast<Index>(graph.condensed.size())) {}
+  LayoutBuilder(const SupernodeTree& tree, const CondensedGraph& graph,
+                std::span<const Index> condensed_at, const KernelSizes& sizes)
+      : tree_(tree),
+        graph_(graph),
+        condensed_at_(condensed_at),
+        sizes_(sizes),
+        condensed_(static_cast<Index>(graph.condensed.size())) {}
 
   FactorLayout build() {
     layout_.front.resize(static_cast<std::size_t>(tree_.supernodes()));
@@ -41,7 +46,8 @@ class LayoutBuilder {
     for (const Index i : graph_.condensed) add(graph_.all, i);
     for (const Index i : tree_.order) add(graph_.rest, i);
     layout_.place.assign(static_cast<std::size_t>(graph_.all.rows), -1);
-    for (std::size_t k = 0; k < layout_.node.size(); ++k) layout_.place[layout_.node[k]] = static_cast<Index>(k);
+    for (std::size_t k = 0; k < layout_.node.size(); ++k)
+      layout_.place[layout_.node[k]] = static_cast<Index>(k);
     layout_.node_column.assign(layout_.node.size(), 0);
   }
 
@@ -68,7 +74,8 @@ class LayoutBuilder {
     f.first_node = condensed_ + tree_.first[s], f.last_node = condensed_ + tree_.first[s + 1];
     for (Index k = f.first_node; k < f.last_node; ++k) f.pivots += weight_at(k);
     f.shape.slab_rows = sizes_.slab_rows;
-    f.shape.columns = (f.pivots + sizes_.column_group - 1) / sizes_.column_group * sizes_.column_group;
+    f.shape.columns =
+        (f.pivots + sizes_.column_group - 1) / sizes_.column_group * sizes_.column_group;
     f.shape.padding = f.shape.columns - f.pivots;
     Index next = f.shape.padding;
     for (Index k = f.first_node; k < f.last_node; ++k) {
@@ -98,7 +105,8 @@ class LayoutBuilder {
       layout_.gathered_size += 9;
     };
     add(k, all.diagonal[i]);
-    for (Index e = all.graph.start[i]; e < all.graph.start[i + 1]; ++e) add(layout_.place[all.node[all.graph.neighbour[e]]], all.value[e]);
+    for (Index e = all.graph.start[i]; e < all.graph.start[i + 1]; ++e)
+      add(layout_.place[all.node[all.graph.neighbour[e]]], all.value[e]);
     layout_.block_start.push_back(static_cast<Index>(layout_.block.size()));
     const double neighbours = all.graph.start[i + 1] - all.graph.start[i];
     layout_.flops += 27.0 * neighbours * (neighbours + 1.0) / 2.0 + 18.0 * neighbours;
@@ -121,7 +129,10 @@ class LayoutBuilder {
     layout_.row_start.push_back(0);
     for (const Index k : layout_.place) {
       layout_.row_to.push_back(k < 0 ? -1 : layout_.gathered_start[k]);
-      if (k >= 0) layout_.row_value.insert(layout_.row_value.end(), &value_[layout_.block_start[k]], &value_[layout_.block_start[k]] + (layout_.block_start[k + 1] - layout_.block_start[k]));
+      if (k >= 0)
+        layout_.row_value.insert(layout_.row_value.end(), &value_[layout_.block_start[k]],
+                                 &value_[layout_.block_start[k]] +
+                                     (layout_.block_start[k + 1] - layout_.block_start[k]));
       layout_.row_start.push_back(static_cast<Index>(layout_.row_value.size()));
     }
   }
@@ -130,8 +141,10 @@ class LayoutBuilder {
     Front& f = layout_.front[s];
     f.first_condensed = s == 0 ? 0 : layout_.front[s - 1].last_condensed;
     f.last_condensed = f.first_condensed;
-    while (f.last_condensed < condensed_ && condensed_at_[f.last_condensed] == s) ++f.last_condensed;
-    for (Index e = layout_.block_start[f.first_condensed]; e < layout_.block_start[f.last_condensed]; ++e)
+    while (f.last_condensed < condensed_ && condensed_at_[f.last_condensed] == s)
+      ++f.last_condensed;
+    for (Index e = layout_.block_start[f.first_condensed];
+         e < layout_.block_start[f.last_condensed]; ++e)
       layout_.condensed_row.push_back(row_of_[layout_.block[e].place]);
   }
 
@@ -147,7 +160,8 @@ class LayoutBuilder {
       for (Index e = begin; e < end; ++e) {
         const Index j = layout_.block[e].place;
         for (Index f = begin; f < end; ++f)
-          if (layout_.block[f].place >= j) planned.push_back({find_block(layout_, j, layout_.block[f].place), {e, f}});
+          if (layout_.block[f].place >= j)
+            planned.push_back({find_block(layout_, j, layout_.block[f].place), {e, f}});
       }
     }
     layout_.pair_start.assign(layout_.block.size() + 1, 0);
@@ -156,12 +170,15 @@ class LayoutBuilder {
       ++layout_.pair_start[p.block + 1];
       layout_.pair.push_back(p.pair);
     }
-    for (std::size_t e = 0; e < layout_.block.size(); ++e) layout_.pair_start[e + 1] += layout_.pair_start[e];
+    for (std::size_t e = 0; e < layout_.block.size(); ++e)
+      layout_.pair_start[e + 1] += layout_.pair_start[e];
   }
 
   void add_block(const FrontShape& shape, Index node, Index place, Index value) {
-    const Index row = row_of_[place], slab = row / sizes_.slab_rows, in_slab = row % sizes_.slab_rows;
-    layout_.block.push_back({shape.panel_offset(slab) + in_slab, shape.panel_offset(slab + 1), place, sizes_.slab_rows - in_slab});
+    const Index row = row_of_[place], slab = row / sizes_.slab_rows,
+                in_slab = row % sizes_.slab_rows;
+    layout_.block.push_back({shape.panel_offset(slab) + in_slab, shape.panel_offset(slab + 1),
+                             place, sizes_.slab_rows - in_slab});
     value_.push_back(value);
     layout_.gathered_size += Offset{weight_at(node)} * weight_at(place);
   }
@@ -174,7 +191,8 @@ class LayoutBuilder {
     child.run_split = child.spread_split = -1;
     Index from = child.shape.columns;
     for (const Index row : tree_.rows(c))
-      for (Index k = condensed_ + row, to = row_of_[k]; to < row_of_[k] + weight_at(k); ++to, ++from) {
+      for (Index k = condensed_ + row, to = row_of_[k]; to < row_of_[k] + weight_at(k);
+           ++to, ++from) {
         append_to_runs(from, to, child.run_begin, parent_columns);
         append_to_spreads(from, to, child.spread_begin);
         if (to < parent_columns || child.run_split >= 0) continue;
@@ -188,7 +206,8 @@ class LayoutBuilder {
 
   void append_to_runs(Index from, Index to, Index begin, Index parent_columns) {
     auto& run = layout_.run;
-    const bool continues = static_cast<Index>(run.size()) > begin && run.back().to + run.back().count == to && to != parent_columns;
+    const bool continues = static_cast<Index>(run.size()) > begin &&
+                           run.back().to + run.back().count == to && to != parent_columns;
     if (continues) {
       ++run.back().count;
     } else {
@@ -219,7 +238,8 @@ class LayoutBuilder {
 
 }  // namespace
 
-FactorLayout make_factor_layout(const SupernodeTree& tree, const CondensedGraph& graph, std::span<const Index> condensed_at, const KernelSizes& sizes) {
+FactorLayout make_factor_layout(const SupernodeTree& tree, const CondensedGraph& graph,
+                                std::span<const Index> condensed_at, const KernelSizes& sizes) {
   return LayoutBuilder(tree, graph, condensed_at, sizes).build();
 }
 
@@ -232,9 +252,11 @@ Index find_block(const FactorLayout& layout, Index place, Index other) {
 
 Offset FactorLayout::bytes() const {
   const auto size_of = [](const auto& v) { return static_cast<Offset>(v.size() * sizeof(v[0])); };
-  return size_of(front) + size_of(child) + size_of(run) + size_of(spread) + size_of(node) + size_of(node_weight) + size_of(node_column) +
-         size_of(place) + size_of(block_start) + size_of(block) + size_of(gathered_start) + size_of(row_start) + size_of(row_value) + size_of(row_to) + size_of(condensed_row) +
-         size_of(pair_start) + size_of(pair) + size_of(task);
+  return size_of(front) + size_of(child) + size_of(run) + size_of(spread) + size_of(node) +
+         size_of(node_weight) + size_of(node_column) + size_of(place) + size_of(block_start) +
+         size_of(block) + size_of(gathered_start) + size_of(row_start) + size_of(row_value) +
+         size_of(row_to) + size_of(condensed_row) + size_of(pair_start) + size_of(pair) +
+         size_of(task);
 }
 
 }  // namespace taut

@@ -1,20 +1,25 @@
 #pragma once
-// Where everything of a factorisation lies in memory, planned once per analysis: panels, updates, vectors, and how children enter their
-// parents.
+// Where everything of a factorisation lies in memory, planned once per analysis: panels, updates,
+// vectors, and how children enter their parents.
 //
-// Every supernode is a front (front_kernels.h). Its rows are padding and its pivots, then the unknowns of its row nodes, in the order of
-// elimination. Nodes that are condensed (condensation.h) come first in that order, before those of the fronts.
+// Every supernode is a front (front_kernels.h). Its rows are padding and its pivots, then the
+// unknowns of its row nodes, in the order of elimination. Nodes that are condensed (condensation.h)
+// come first in that order, before those of the fronts.
 //
-//   gathered A's blocks in the order of elimination; those of condensed nodes become their G, in the diagonal block's place, and U
-//   scratch  of each thread, for the task at hand: panels, which live while their front is eliminated, and updates, which live until the
-//            parent has taken them in; later ones reuse the place, so all of this stays in a cache
-//   arena    the same of the fronts that are tasks of their own, and the updates that tasks hand on: places of tasks that may run at the
-//            same time do not overlap
-//   packed   panels one after the other in the order of elimination: the factor L, which the solves stream through
+//   gathered A's blocks in the order of elimination; those of condensed nodes become their G, in
+//   the diagonal block's place, and U
+//   scratch  of each thread, for the task at hand: panels, which live while their front is
+//            eliminated, and updates, which live until the parent has taken them in; later ones
+//            reuse the place, so all of this stays in a cache
+//   arena    the same of the fronts that are tasks of their own, and the updates that tasks hand
+//            on: places of tasks that may run at the same time do not overlap
+//   packed   panels one after the other in the order of elimination: the factor L, which the solves
+//            stream through
 //   vector   vector_size() entries a front: what the solves work on
 //
-// Tasks: whole subtrees whose work is a small share of all, each eliminated by one thread in order; every front above them is a task of its
-// own, whose products are shared between threads. The shares depend on `threads`, so the plan does; the numbers that come out do not.
+// Tasks: whole subtrees whose work is a small share of all, each eliminated by one thread in order;
+// every front above them is a task of its own, whose products are shared between threads. The
+// shares depend on `threads`, so the plan does; the numbers that come out do not.
 
 #include <span>
 #include <vector>
@@ -29,12 +34,13 @@ namespace taut {
 struct Front {
   FrontShape shape;
   Index parent = -1;
-  Index pivots = 0;                      // unknowns, without padding
-  Index first_node = 0, last_node = 0;   // places of its pivot nodes in the order
-  Index first_condensed = 0, last_condensed = 0;  // places of the condensed nodes that the solves take in here
+  Index pivots = 0;                     // unknowns, without padding
+  Index first_node = 0, last_node = 0;  // places of its pivot nodes in the order
+  // places of the condensed nodes that the solves take in here
+  Index first_condensed = 0, last_condensed = 0;
   Index child_begin = 0, child_end = 0;  // into FactorLayout::child
-  // Into FactorLayout::run and ::spread: how its rows below the pivots lie in its parent. Runs before the split are pivots there, spreads
-  // before theirs hold nothing else.
+  // Into FactorLayout::run and ::spread: how its rows below the pivots lie in its parent. Runs
+  // before the split are pivots there, spreads before theirs hold nothing else.
   Index run_begin = 0, run_split = 0, run_end = 0;
   Index spread_begin = 0, spread_split = 0, spread_end = 0;
   Offset panel = 0, update = 0;
@@ -44,10 +50,11 @@ struct Front {
 
 // A block of A below or on the diagonal, in the column of a pivot node.
 struct BlockPlace {
-  Offset offset = 0;       // of the other node's first row in the panel's first column
-  Offset next_slab = 0;    // of the first row of the slab after it there
-  Index place = 0;         // of the other node in the order
-  Index rows_in_slab = 0;  // how many of the other node's rows are in the slab where it begins, or more
+  Offset offset = 0;     // of the other node's first row in the panel's first column
+  Offset next_slab = 0;  // of the first row of the slab after it there
+  Index place = 0;       // of the other node in the order
+  // how many of the other node's rows are in the slab where it begins, or more
+  Index rows_in_slab = 0;
 };
 
 // Fronts begin ... end-1; `shared`: a single one, large enough for several threads.
@@ -73,19 +80,26 @@ struct FactorLayout {
   std::vector<Index> place;        // per row of A: of its node in the order, or -1
   std::vector<Index> block_start;  // per place in the order, into block and block_value; nodes + 1
   std::vector<BlockPlace> block;   // the node's diagonal block first, then those of later nodes
-  std::vector<Offset> gathered_start;  // per place in the order: where its blocks begin among those gathered from A
+  // per place in the order: where its blocks begin among those gathered from A
+  std::vector<Offset> gathered_start;
   // In the order of A's rows, as gathering goes:
-  std::vector<Index> row_start;  // per row, into row_value: its node's blocks, in the order of `block`; rows + 1
-  std::vector<Index> row_value;  // per block: its first column in the row of the analysed matrix; -1: it has none there
-  std::vector<Offset> row_to;    // per row: gathered_start of its node; -1 without unknowns
+  // per row, into row_value: its node's blocks, in the order of `block`; rows + 1
+  std::vector<Index> row_start;
+  // per block: its first column in the row of the analysed matrix; -1: it has none there
+  std::vector<Index> row_value;
+  std::vector<Offset> row_to;  // per row: gathered_start of its node; -1 without unknowns
   // Where nodes are condensed, and then a gathered block e begins at 9 e:
-  std::vector<Index> condensed_row;   // per block of condensed nodes: where the other node begins in the vector of the front that takes it in
-  std::vector<Index> pair_start;      // per block, into pair; blocks + 1
-  std::vector<CondensedPair> pair;    // first: at the node that has the block
+  // per block of condensed nodes: where the other node begins in the vector of the front that takes
+  // it in
+  std::vector<Index> condensed_row;
+  std::vector<Index> pair_start;    // per block, into pair; blocks + 1
+  std::vector<CondensedPair> pair;  // first: at the node that has the block
   std::vector<FrontTask> task;
   TaskTree task_tree;
-  Offset arena_size = 0, scratch_size = 0, packed_size = 0, vector_size = 0, gathered_size = 0;  // elements
-  double flops = 0.0;                                       // of the padded fronts and the condensed nodes
+  // elements
+  Offset arena_size = 0, scratch_size = 0, packed_size = 0, vector_size = 0, gathered_size = 0;
+  // of the padded fronts and the condensed nodes
+  double flops = 0.0;
 
   Offset bytes() const;
 };
@@ -97,7 +111,8 @@ struct KernelSizes {
 };
 
 // The tree is of the nodes that are not condensed. condensed_at: see assign_condensed.
-FactorLayout make_factor_layout(const SupernodeTree& tree, const CondensedGraph& graph, std::span<const Index> condensed_at, const KernelSizes& sizes);
+FactorLayout make_factor_layout(const SupernodeTree& tree, const CondensedGraph& graph,
+                                std::span<const Index> condensed_at, const KernelSizes& sizes);
 
 // The block of two nodes that has a place, at the one that is eliminated first (asserted).
 Index find_block(const FactorLayout& layout, Index place, Index other);

@@ -1,33 +1,42 @@
 #pragma once
-// The dense arithmetic of the block Cholesky factorisation: what is done inside one front, compiled once per instruction set.
+// The dense arithmetic of the block Cholesky factorisation: what is done inside one front, compiled
+// once per instruction set.
 //
-// A front is the lower triangle of a dense symmetric matrix of `rows` rows, whose first `columns` columns (pivots) are eliminated:
+// A front is the lower triangle of a dense symmetric matrix of `rows` rows, whose first `columns`
+// columns (pivots) are eliminated:
 //
 //        columns                        L11 L11ᵀ = F11          Cholesky of the pivots
 //      | F11      |                     L21      = F21 L11⁻ᵀ    triangular solve
-//      | F21  F22 |                     U        = -L21 L21ᵀ    update, to be added to the parent's front
+//      | F21  F22 |                     U        = -L21 L21ᵀ    update, to be added to the parent's
+//                                                               front
 //
-// Both parts are stored as slabs of R = slab_rows rows, columns one after the other inside a slab, slabs one after the other:
+// Both parts are stored as slabs of R = slab_rows rows, columns one after the other inside a slab,
+// slabs one after the other:
 //
-//   panel (F11, F21, then L11, L21)   slab b holds the columns 0 ... min(columns, R(b+1))-1:       element (i, j) at panel_offset(i/R) + j
-//   R + i%R update (U)                        slab b >= columns/R holds the columns columns ... R(b+1)-1:  at update_offset(i/R) +
-//   (j-columns) R + i%R
+//   panel (F11, F21, then L11, L21)   slab b holds the columns 0 ... min(columns, R(b+1))-1:
+//   element (i, j) at panel_offset(i/R) + j
+//   R + i%R update (U)                        slab b >= columns/R holds the columns columns ...
+//   R(b+1)-1:  at update_offset(i/R) + (j-columns) R + i%R
 //
-// A slab's column is a few SIMD registers; a row of a slab, read with stride R, is what the other operand of a product needs. So slabs
-// serve as both operands of every product as they are. The diagonal of L11 is stored inverted. Above the diagonal, an
-// eliminated panel's slabs are 0; an update's are undefined, and a panel's before.
+// A slab's column is a few SIMD registers; a row of a slab, read with stride R, is what the other
+// operand of a product needs. So slabs serve as both operands of every product as they are. The
+// diagonal of L11 is stored inverted. Above the diagonal, an eliminated panel's slabs are 0; an
+// update's are undefined, and a panel's before.
 //
-// The solves only read L11 and L21 once, from memory: they take the packed panel, which leaves out most of what the slabs are padded with
-// and lies in the order in which it is read. Group after group of column_group pivots (without those that are padding):
+// The solves only read L11 and L21 once, from memory: they take the packed panel, which leaves out
+// most of what the slabs are padded with and lies in the order in which it is read. Group after
+// group of column_group pivots (without those that are padding):
 //
 //   triangle   the group's columns, its own rows (column_group of them each)
-//   below      the rows after the group's, cut into pieces at the multiples of the vector length, columns one after the other inside a
+//   below      the rows after the group's, cut into pieces at the multiples of the vector length,
+//              columns one after the other inside a
 //   piece; the
 //              front's last rows padded to a multiple of 4
 //
-// R and column_group (the register block of the elimination is R x column_group) differ by instruction set and precision: the layout is made for the kernels
-// that run. `columns` is a multiple of column_group; column_group divides R. No kernel allocates; all may be called from several threads on
-// different data.
+// R and column_group (the register block of the elimination is R x column_group) differ by
+// instruction set and precision: the layout is made for the kernels that run. `columns` is a
+// multiple of column_group; column_group divides R. No kernel allocates; all may be called from
+// several threads on different data.
 
 #include <cstdint>
 
@@ -39,7 +48,8 @@ struct FrontShape {
   std::int32_t rows = 0;     // with the pivots
   std::int32_t slab_rows = 0;
 
-  // These functions must never exist out of line: one compiled for a newer instruction set could be linked into the plain build.
+  // These functions must never exist out of line: one compiled for a newer instruction set could be
+  // linked into the plain build.
   [[gnu::always_inline]] std::int32_t slabs() const { return (rows + slab_rows - 1) / slab_rows; }
   [[gnu::always_inline]] std::int32_t first_update_slab() const { return columns / slab_rows; }
   [[gnu::always_inline]] std::int32_t panel_width(std::int32_t slab) const {
@@ -47,39 +57,48 @@ struct FrontShape {
     return end < columns ? end : columns;
   }
   [[gnu::always_inline]] std::int64_t panel_offset(std::int32_t slab) const {
-    const std::int64_t r = slab_rows, full = slab < first_update_slab() ? slab : first_update_slab();
+    const std::int64_t r = slab_rows,
+                       full = slab < first_update_slab() ? slab : first_update_slab();
     return r * (r * (full * (full + 1) / 2) + (slab - full) * columns);
   }
   [[gnu::always_inline]] std::int64_t update_offset(std::int32_t slab) const {
     const std::int64_t r = slab_rows, first = first_update_slab(), b = slab;
     return r * (r * ((b * (b + 1) - first * (first + 1)) / 2) - (b - first) * columns);
   }
-  // Of what the solves work on: whole SIMD registers, of at most a slab's column each, and room for a few entries that are copied too many.
+  // Of what the solves work on: whole SIMD registers, of at most a slab's column each, and room for
+  // a few entries that are copied too many.
   [[gnu::always_inline]] std::int64_t vector_size() const {
     const std::int64_t r = slab_rows;
     return (rows + 4 + r - 1) / r * r;
   }
   [[gnu::always_inline]] std::int64_t panel_size() const { return panel_offset(slabs()); }
-  [[gnu::always_inline]] std::int64_t update_size() const { return rows > columns ? update_offset(slabs()) : 0; }
-  // An update is formed in tiles: of two slabs, counted from the last one up, R columns each, but the last tile has all columns around the
-  // diagonal. `upper` is the first of the two, counted from first_update_slab(), or -1 where that one is alone.
-  [[gnu::always_inline]] static std::int32_t tiles_of_two(std::int32_t upper) { return upper < 0 ? 1 : upper + 1; }
+  [[gnu::always_inline]] std::int64_t update_size() const {
+    return rows > columns ? update_offset(slabs()) : 0;
+  }
+  // An update is formed in tiles: of two slabs, counted from the last one up, R columns each, but
+  // the last tile has all columns around the diagonal. `upper` is the first of the two, counted
+  // from first_update_slab(), or -1 where that one is alone.
+  [[gnu::always_inline]] static std::int32_t tiles_of_two(std::int32_t upper) {
+    return upper < 0 ? 1 : upper + 1;
+  }
   [[gnu::always_inline]] std::int32_t update_tiles() const {
     const std::int32_t n = slabs() - first_update_slab(), twos = n / 2;
     return rows <= columns ? 0 : n % 2 == 0 ? twos * twos : 1 + twos * (twos + 1);
   }
 };
 
-// How the rows of a child's front lie in its parent's. Both are in the order of elimination, so what a SIMD register of the parent's rows
-// takes are consecutive rows of the child.
+// How the rows of a child's front lie in its parent's. Both are in the order of elimination, so
+// what a SIMD register of the parent's rows takes are consecutive rows of the child.
 //
-// `count` rows from `from` on are the parent's from `to` on, within either its pivots or its other rows.
+// `count` rows from `from` on are the parent's from `to` on, within either its pivots or its other
+// rows.
 struct RowRun {
   std::int32_t from = 0, to = 0, count = 0;
 };
 
-// The parent's rows to ... to+lanes-1: row to+i is the child's row from+lane[i], or none of its rows where lane[i] < 0. `from` and `to` are
-// multiples of the register's lanes, and lane[i] < 2 lanes.
+// The parent's rows to ... to+lanes-1: row to+i is the child's row from+lane[i], or none of its
+// rows where lane[i] < 0. `from` and `to` are multiples of the register's lanes, and lane[i] < 2
+// lanes.
 struct RowSpread {
   static constexpr std::int32_t most_lanes = 16;
   std::int32_t from = 0, to = 0, last = 0;  // last: the last of the child's rows here
@@ -97,27 +116,34 @@ struct FrontKernels {
   std::int32_t lanes;  // of a SIMD register; divides slab_rows
   std::int32_t slab_rows;
   std::int32_t column_group;
-  std::int32_t panel_columns;  // columns eliminated before the next ones are touched; a multiple of slab_rows
+  // columns eliminated before the next ones are touched; a multiple of slab_rows
+  std::int32_t panel_columns;
 
-  // Eliminates the pivots begin ... end-1 (at most panel_columns, begin a multiple of it) in the slabs slab_begin ... slab_end-1. All
-  // earlier pivots are eliminated there, and the slabs that hold the rows begin ... end-1 come first. Stops at a bad pivot.
-  BadPivot (*eliminate)(const FrontShape& shape, T* panel, std::int32_t slab_begin, std::int32_t slab_end, std::int32_t begin,
-                        std::int32_t end);
+  // Eliminates the pivots begin ... end-1 (at most panel_columns, begin a multiple of it) in the
+  // slabs slab_begin ... slab_end-1. All earlier pivots are eliminated there, and the slabs that
+  // hold the rows begin ... end-1 come first. Stops at a bad pivot.
+  BadPivot (*eliminate)(const FrontShape& shape, T* panel, std::int32_t slab_begin,
+                        std::int32_t slab_end, std::int32_t begin, std::int32_t end);
 
-  // U = -L21 L21ᵀ for the tiles begin ... end-1 of update_tiles(), from the left to the diagonal, then the next two slabs. Overwrites.
-  void (*form_update)(const FrontShape& shape, const T* panel, T* update, std::int32_t begin, std::int32_t end);
+  // U = -L21 L21ᵀ for the tiles begin ... end-1 of update_tiles(), from the left to the diagonal,
+  // then the next two slabs. Overwrites.
+  void (*form_update)(const FrontShape& shape, const T* panel, T* update, std::int32_t begin,
+                      std::int32_t end);
 
-  // Adds a child's update to a front: in the columns of the runs, the rows of the spreads from the diagonal on. `target` is the parent's
-  // panel if the columns are pivots there, else the parent's update. What it holds above the diagonal is undefined afterwards.
-  void (*add_update)(const FrontShape& child, const T* update, const RowRun* runs, std::int32_t run_count, const RowSpread* spreads,
-                     std::int32_t spread_count, const FrontShape& parent, T* target, bool target_is_panel);
+  // Adds a child's update to a front: in the columns of the runs, the rows of the spreads from the
+  // diagonal on. `target` is the parent's panel if the columns are pivots there, else the parent's
+  // update. What it holds above the diagonal is undefined afterwards.
+  void (*add_update)(const FrontShape& child, const T* update, const RowRun* runs,
+                     std::int32_t run_count, const RowSpread* spreads, std::int32_t spread_count,
+                     const FrontShape& parent, T* target, bool target_is_panel);
   // Adds the rows of the spreads of a child's vector to its parent's.
   void (*add_rows)(const RowSpread* spreads, std::int32_t count, const T* from, T* to);
 
   // Elements of a packed panel, a multiple of a cache line; its begin must lie on one.
   std::int64_t (*packed_size)(const FrontShape& shape);
   // Packs the columns begin ... end-1, whole groups.
-  void (*pack)(const FrontShape& shape, const T* panel, T* packed, std::int32_t begin, std::int32_t end);
+  void (*pack)(const FrontShape& shape, const T* panel, T* packed, std::int32_t begin,
+               std::int32_t end);
 
   // x: vector_size() entries; those beyond `rows` may be anything.
   //   forward: x1 = L11⁻¹ x1, x2 -= L21 x1.  backward: x1 = L11⁻ᵀ (x1 - L21ᵀ x2)

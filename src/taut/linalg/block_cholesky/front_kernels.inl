@@ -1,5 +1,6 @@
-// The kernels of front_kernels.h. Included by one source per instruction set, which names its namespace in TAUT_KERNELS; the register block
-// follows from what the compiler may use. Nothing here may call an inline function of a library: see FrontShape.
+// The kernels of front_kernels.h. Included by one source per instruction set, which names its
+// namespace in TAUT_KERNELS; the register block follows from what the compiler may use. Nothing
+// here may call an inline function of a library: see FrontShape.
 
 #include <type_traits>
 #include <utility>  // index_sequence only
@@ -11,12 +12,15 @@ namespace {
 
 using Int = std::int32_t;
 
-// The registers of one block of the update: R/lanes x G accumulators, R/lanes for a column of the first operand, one for the broadcast second
-// operand. A block may be `wide` columns wide: eight accumulators hide the latency of two multiply-adds a cycle, wider slabs would only pad
-// fronts more, most of which are small. Where there are two slabs, one below the other, a block takes them together if there are registers
-// for it: then each number that is broadcast serves two multiply-adds, and it is these that take the time, not the loads (a quarter less).
-// Where only half of a slab's rows are wanted, a block has half a slab's: with AVX-512 that is a narrower
-// register, of which many processors take two at once. The elimination takes columns_at_once columns, to keep from storing what it needs next.
+// The registers of one block of the update: R/lanes x G accumulators, R/lanes for a column of the
+// first operand, one for the broadcast second operand. A block may be `wide` columns wide: eight
+// accumulators hide the latency of two multiply-adds a cycle, wider slabs would only pad fronts
+// more, most of which are small. Where there are two slabs, one below the other, a block takes them
+// together if there are registers for it: then each number that is broadcast serves two
+// multiply-adds, and it is these that take the time, not the loads (a quarter less). Where only
+// half of a slab's rows are wanted, a block has half a slab's: with AVX-512 that is a narrower
+// register, of which many processors take two at once. The elimination takes columns_at_once
+// columns, to keep from storing what it needs next.
 #if defined(__AVX512F__)
 constexpr Int register_bytes = 64, block_vectors = 1, group = 4, wide = 8, most_slabs = 2;
 #else
@@ -55,10 +59,11 @@ using Vector = typename Simd<T>::Vector;
 template <class T>
 constexpr Int lanes = register_bytes / static_cast<Int>(sizeof(T));
 template <class T>
-constexpr Int slab_rows = block_vectors* lanes<T>;
+constexpr Int slab_rows = block_vectors * lanes<T>;
 template <class T>
-constexpr Int panel_columns = 120 / slab_rows<T>* slab_rows<T>;
-// An update's product goes over so many columns of three slabs at a time, or fewer: they stay in the first-level cache.
+constexpr Int panel_columns = 120 / slab_rows<T> * slab_rows<T>;
+// An update's product goes over so many columns of three slabs at a time, or fewer: they stay in
+// the first-level cache.
 constexpr Int update_columns = 160;
 
 #define TAUT_INLINE [[gnu::always_inline]] inline
@@ -110,30 +115,36 @@ struct Select<false, A, B> {
   using Type = B;
 };
 
-// A register block: `Columns` columns of `Halves` halves of a slab, from its half `First` on; or of two whole slabs, the second of which lies
-// `next` elements after the first.
+// A register block: `Columns` columns of `Halves` halves of a slab, from its half `First` on; or of
+// two whole slabs, the second of which lies `next` elements after the first.
 template <class T, Int First = 0, Int Halves = 2, Int Columns = group, Int Slabs = 1>
 struct Block {
   static_assert(Slabs == 1 || Halves == 2);
   static constexpr Int half = slab_rows<T> / 2, row = First * half;
   using Register = typename Select<Halves == 1, typename Simd<T>::Half, Vector<T>>::Type;
-  static constexpr Int count = static_cast<Int>(sizeof(Register) / sizeof(T)), in_slab = Halves * half / count, vectors = Slabs * in_slab;
+  static constexpr Int count = static_cast<Int>(sizeof(Register) / sizeof(T)),
+                       in_slab = Halves * half / count, vectors = Slabs * in_slab;
   Register v[Columns][vectors];
 
-  TAUT_INLINE static std::int64_t place(Int i, std::int64_t next) { return i / in_slab * next + row + i % in_slab * count; }
+  TAUT_INLINE static std::int64_t place(Int i, std::int64_t next) {
+    return i / in_slab * next + row + i % in_slab * count;
+  }
   TAUT_INLINE void load_from(const T* column, std::int64_t next = 0) {
     for (Int j = 0; j < Columns; ++j)
-      for (Int i = 0; i < vectors; ++i) v[j][i] = load_as<Register>(column + j * slab_rows<T> + place(i, next));
+      for (Int i = 0; i < vectors; ++i)
+        v[j][i] = load_as<Register>(column + j * slab_rows<T> + place(i, next));
   }
   TAUT_INLINE void store_to(T* column, std::int64_t next = 0) const {
     for (Int j = 0; j < Columns; ++j)
-      for (Int i = 0; i < vectors; ++i) store_as(column + j * slab_rows<T> + place(i, next), v[j][i]);
+      for (Int i = 0; i < vectors; ++i)
+        store_as(column + j * slab_rows<T> + place(i, next), v[j][i]);
   }
   TAUT_INLINE void clear() {
     for (Int j = 0; j < Columns; ++j)
       for (Int i = 0; i < vectors; ++i) v[j][i] = Register{};
   }
-  // v -= A Bᵀ over k columns: a is a slab, or the first of two, b points at the group's first row in another one.
+  // v -= A Bᵀ over k columns: a is a slab, or the first of two, b points at the group's first row
+  // in another one.
   TAUT_INLINE void subtract_product(const T* a, const T* b, Int columns, std::int64_t next = 0) {
     for (Int k = 0; k < columns; ++k, a += slab_rows<T>, b += slab_rows<T>) {
       Register column[vectors];
@@ -146,7 +157,8 @@ struct Block {
       }
     }
   }
-  // v = v L⁻ᵀ with the block's triangle of L (diagonal inverted), whose first row and column are at `triangle`.
+  // v = v L⁻ᵀ with the block's triangle of L (diagonal inverted), whose first row and column are at
+  // `triangle`.
   TAUT_INLINE void solve_triangle(const T* triangle) {
 #pragma GCC unroll 16
     for (Int j = 0; j < Columns; ++j) {
@@ -160,7 +172,8 @@ struct Block {
   }
 };
 
-// Calls f.template operator()<First, Halves>() with the halves of a slab that hold its rows begin ... end-1.
+// Calls f.template operator()<First, Halves>() with the halves of a slab that hold its rows begin
+// ... end-1.
 template <class T, class Function>
 TAUT_INLINE void with_rows(Int begin, Int end, Function f) {
   constexpr Int half = slab_rows<T> / 2;
@@ -175,9 +188,12 @@ TAUT_INLINE void with_rows(Int begin, Int end, Function f) {
 
 // As many columns at once as the registers hold beside what they are subtracted from.
 template <class T, Int Slabs = 1>
-constexpr Int columns_at_once = Slabs == 2 ? wide : block_vectors == 1 ? slab_rows<T> : group;
+constexpr Int columns_at_once = Slabs == 2           ? wide
+                                : block_vectors == 1 ? slab_rows<T>
+                                                     : group;
 
-// Calls f.template operator()<Count>() with how many of `columns`, a multiple of the group, are taken at once.
+// Calls f.template operator()<Count>() with how many of `columns`, a multiple of the group, are
+// taken at once.
 template <class T, Int Count = columns_at_once<T>, class Function>
 TAUT_INLINE void with_count(Int columns, Function f) {
   if constexpr (Count == group) {
@@ -196,35 +212,40 @@ struct Panel {
   T* slab(Int b) const { return values + shape.panel_offset(b); }
 };
 
-// Columns of a slab, or of two: subtracts the product over the columns 0 ... before-1, all of them eliminated, in pieces that stay in the
-// first-level cache.
+// Columns of a slab, or of two: subtracts the product over the columns 0 ... before-1, all of them
+// eliminated, in pieces that stay in the first-level cache.
 template <class T, Int Slabs>
-void subtract_earlier_panels(const Panel<T>& panel, T* slab, std::int64_t next, Int before, Int begin, Int end) {
+void subtract_earlier_panels(const Panel<T>& panel, T* slab, std::int64_t next, Int before,
+                             Int begin, Int end) {
   constexpr Int r = slab_rows<T>;
   for (Int k = 0; k < before; k += panel_columns<T>)
     for (Int c = begin; c < end; c += columns_at_once<T, Slabs>)
-      with_count<T, columns_at_once<T, Slabs>>(end - c, [&]<Int Count>() __attribute__((always_inline)) {
-        Block<T, 0, 2, Count, Slabs> block;
-        block.load_from(slab + c * r, next);
-        block.subtract_product(slab + k * r, panel.slab(c / r) + c % r + k * r, panel_columns<T>, next);
-        block.store_to(slab + c * r, next);
-      });
+      with_count<T, columns_at_once<T, Slabs>>(
+          end - c, [&]<Int Count>() __attribute__((always_inline)) {
+            Block<T, 0, 2, Count, Slabs> block;
+            block.load_from(slab + c * r, next);
+            block.subtract_product(slab + k * r, panel.slab(c / r) + c % r + k * r,
+                                   panel_columns<T>, next);
+            block.store_to(slab + c * r, next);
+          });
 }
 
-// The columns begin ... end-1 of a slab, or of two, that lie left of its diagonal block: product, over the columns from `from` on, and
-// triangular solve in one pass.
+// The columns begin ... end-1 of a slab, or of two, that lie left of its diagonal block: product,
+// over the columns from `from` on, and triangular solve in one pass.
 template <class T, Int Slabs>
-void solve_columns(const Panel<T>& panel, T* slab, std::int64_t next, Int from, Int begin, Int end) {
+void solve_columns(const Panel<T>& panel, T* slab, std::int64_t next, Int from, Int begin,
+                   Int end) {
   constexpr Int r = slab_rows<T>;
   for (Int c = begin; c < end; c += columns_at_once<T, Slabs>) {
     const T* pivot_rows = panel.slab(c / r) + c % r;
-    with_count<T, columns_at_once<T, Slabs>>(end - c, [&]<Int Count>() __attribute__((always_inline)) {
-      Block<T, 0, 2, Count, Slabs> block;
-      block.load_from(slab + c * r, next);
-      block.subtract_product(slab + from * r, pivot_rows + from * r, c - from, next);
-      block.solve_triangle(pivot_rows + c * r);
-      block.store_to(slab + c * r, next);
-    });
+    with_count<T, columns_at_once<T, Slabs>>(
+        end - c, [&]<Int Count>() __attribute__((always_inline)) {
+          Block<T, 0, 2, Count, Slabs> block;
+          block.load_from(slab + c * r, next);
+          block.subtract_product(slab + from * r, pivot_rows + from * r, c - from, next);
+          block.solve_triangle(pivot_rows + c * r);
+          block.store_to(slab + c * r, next);
+        });
   }
 }
 
@@ -248,9 +269,10 @@ TAUT_INLINE Vector<T> inverse_square_roots(Vector<T> v) {
   return T(1) / roots;
 }
 
-// `Count` columns of the diagonal block, from its column `First` on, with all rows of the slab, in registers: the product over the columns
-// from `from` on, then L D Lᵀ, whose chain of operations from pivot to pivot is a quotient, a product and a subtraction long, and at the end
-// the square roots of all pivots at once.
+// `Count` columns of the diagonal block, from its column `First` on, with all rows of the slab, in
+// registers: the product over the columns from `from` on, then L D Lᵀ, whose chain of operations
+// from pivot to pivot is a quotient, a product and a subtraction long, and at the end the square
+// roots of all pivots at once.
 template <class T, Int First, Int Count>
 TAUT_INLINE void factor_in_registers(T* slab, Int from, Int diagonal, BadPivot& bad) {
   constexpr Int r = slab_rows<T>;
@@ -272,9 +294,11 @@ TAUT_INLINE void factor_in_registers(T* slab, Int from, Int diagonal, BadPivot& 
         for (Int i = 0; i < block_vectors; ++i) block.v[K][i] -= block.v[J][i] * factor;
       }
     };
-    [&]<std::size_t... K>(std::index_sequence<K...>) __attribute__((always_inline)) { (subtract_from.template operator()<K>(), ...); }(all);
+    [&]<std::size_t... K>(std::index_sequence<K...>)
+        __attribute__((always_inline)) { (subtract_from.template operator()<K>(), ...); }(all);
   };
-  [&]<std::size_t... J>(std::index_sequence<J...>) __attribute__((always_inline)) { (eliminate_column.template operator()<J>(), ...); }(all);
+  [&]<std::size_t... J>(std::index_sequence<J...>)
+      __attribute__((always_inline)) { (eliminate_column.template operator()<J>(), ...); }(all);
   Vector<T> scales[pivot_vectors];
   for (Int i = 0; i < pivot_vectors; ++i) scales[i] = inverse_square_roots<T>(pivots[i]);
   const auto scale_column = [&]<std::size_t J>() __attribute__((always_inline)) {
@@ -284,7 +308,8 @@ TAUT_INLINE void factor_in_registers(T* slab, Int from, Int diagonal, BadPivot& 
       block.v[J][i] = masked<T>(below == 0 ? scale : block.v[J][i] * scale, below >= 0);
     }
   };
-  [&]<std::size_t... J>(std::index_sequence<J...>) __attribute__((always_inline)) { (scale_column.template operator()<J>(), ...); }(all);
+  [&]<std::size_t... J>(std::index_sequence<J...>)
+      __attribute__((always_inline)) { (scale_column.template operator()<J>(), ...); }(all);
   block.store_to(first);
   constexpr T largest = sizeof(T) == 4 ? T(__FLT_MAX__) : T(__DBL_MAX__);
   for (Int j = 0; j < Count && bad.column < 0; ++j)
@@ -292,13 +317,15 @@ TAUT_INLINE void factor_in_registers(T* slab, Int from, Int diagonal, BadPivot& 
       bad.column = diagonal + First + j, bad.value = static_cast<double>(pivot);
 }
 
-// The columns from `diagonal` to end-1, those of the slab's diagonal block; the product starts at column `from`.
+// The columns from `diagonal` to end-1, those of the slab's diagonal block; the product starts at
+// column `from`.
 template <class T, Int First = 0>
 TAUT_INLINE void factor_columns(T* slab, Int from, Int diagonal, Int end, BadPivot& bad) {
   with_count<T>(end - diagonal - First, [&]<Int Count>() __attribute__((always_inline)) {
     factor_in_registers<T, First, Count>(slab, from, diagonal, bad);
     if constexpr (First + Count < slab_rows<T> && Count == columns_at_once<T>)
-      if (bad.column < 0 && diagonal + First + Count < end) factor_columns<T, First + Count>(slab, from, diagonal, end, bad);
+      if (bad.column < 0 && diagonal + First + Count < end)
+        factor_columns<T, First + Count>(slab, from, diagonal, end, bad);
   });
 }
 
@@ -316,7 +343,8 @@ BadPivot eliminate_slab(const Panel<T>& panel, Int b, Int begin, Int left, Int e
 }
 
 template <class T>
-BadPivot eliminate(const FrontShape& shape, T* values, Int slab_begin, Int slab_end, Int begin, Int end) {
+BadPivot eliminate(const FrontShape& shape, T* values, Int slab_begin, Int slab_end, Int begin,
+                   Int end) {
   constexpr Int r = slab_rows<T>;
   const Panel<T> panel{shape, values};
   for (Int b = slab_begin; b < slab_end; b += most_slabs) {
@@ -332,23 +360,27 @@ BadPivot eliminate(const FrontShape& shape, T* values, Int slab_begin, Int slab_
       }
     }
     for (Int own = b; own < last && left < end; ++own)
-      if (const BadPivot bad = eliminate_slab(panel, own, begin, left, end); bad.column >= 0) return bad;
+      if (const BadPivot bad = eliminate_slab(panel, own, begin, left, end); bad.column >= 0)
+        return bad;
   }
   return {};
 }
 
-// One R x R tile of the update, or on the diagonal its lower part: the rows and columns that the front has. Or one in each of two slabs, off the
-// diagonal.
+// One R x R tile of the update, or on the diagonal its lower part: the rows and columns that the
+// front has. Or one in each of two slabs, off the diagonal.
 template <class T, Int Slabs = 1>
 void form_tile(const FrontShape& shape, const T* panel, T* update, Int row_slab, Int column_slab) {
   constexpr Int r = slab_rows<T>;
   const T* rows = panel + shape.panel_offset(row_slab);
   const T* others = panel + shape.panel_offset(column_slab);
   T* out = update + shape.update_offset(row_slab);
-  const std::int64_t next = Slabs == 2 ? shape.panel_offset(row_slab + 1) - shape.panel_offset(row_slab) : 0;
-  const std::int64_t next_out = Slabs == 2 ? shape.update_offset(row_slab + 1) - shape.update_offset(row_slab) : 0;
+  const std::int64_t next =
+      Slabs == 2 ? shape.panel_offset(row_slab + 1) - shape.panel_offset(row_slab) : 0;
+  const std::int64_t next_out =
+      Slabs == 2 ? shape.update_offset(row_slab + 1) - shape.update_offset(row_slab) : 0;
   const bool is_diagonal = row_slab == column_slab;
-  const Int first = r * column_slab > shape.columns ? r * column_slab : shape.columns, end_row = shape.rows - r * row_slab;
+  const Int first = r * column_slab > shape.columns ? r * column_slab : shape.columns,
+            end_row = shape.rows - r * row_slab;
   const Int last = r * (column_slab + 1) < shape.rows ? r * (column_slab + 1) : shape.rows;
   // Pieces of one length; without columns there is one, which sets the update to zero.
   const Int pieces = shape.columns > 0 ? (shape.columns + update_columns - 1) / update_columns : 1;
@@ -376,7 +408,8 @@ void form_tile(const FrontShape& shape, const T* panel, T* update, Int row_slab,
   }
 }
 
-// Slabs in twos from the last one up, so that the first may be alone: tile after tile, then what is around the diagonal.
+// Slabs in twos from the last one up, so that the first may be alone: tile after tile, then what is
+// around the diagonal.
 template <class T>
 void form_update(const FrontShape& shape, const T* panel, T* update, Int begin, Int end) {
   const Int first = shape.first_update_slab(), slabs = shape.slabs();
@@ -386,12 +419,15 @@ void form_update(const FrontShape& shape, const T* panel, T* update, Int begin, 
     for (Int t = begin > before ? begin - before : 0; t < tiles && before + t < end; ++t) {
       const Int column = first + t;
       if (t == tiles - 1) {
-        if (upper >= first) form_tile(shape, panel, update, upper, upper), form_tile(shape, panel, update, lower, upper);
+        if (upper >= first)
+          form_tile(shape, panel, update, upper, upper),
+              form_tile(shape, panel, update, lower, upper);
         form_tile(shape, panel, update, lower, lower);
       } else if (most_slabs == 2 && 2 * (shape.rows - slab_rows<T> * lower) > slab_rows<T>) {
         form_tile<T, most_slabs>(shape, panel, update, upper, column);
       } else {
-        form_tile(shape, panel, update, upper, column), form_tile(shape, panel, update, lower, column);
+        form_tile(shape, panel, update, upper, column),
+            form_tile(shape, panel, update, lower, column);
       }
     }
     before += tiles;
@@ -410,56 +446,62 @@ struct Spread {
     is_taken = lane >= 0;
   }
   // Of the register at `from`, and the one at `next`.
-  TAUT_INLINE Vector<T> of(const T* from) const { return masked<T>(__builtin_shuffle(load(from), lane), is_taken); }
+  TAUT_INLINE Vector<T> of(const T* from) const {
+    return masked<T>(__builtin_shuffle(load(from), lane), is_taken);
+  }
   TAUT_INLINE Vector<T> of(const T* from, const T* next) const {
     return masked<T>(__builtin_shuffle(load(from), load(next), lane), is_taken);
   }
 };
 
-// Calls f(source) with what takes a spread's rows from a register and, if there are rows of two, from the next one.
+// Calls f(source) with what takes a spread's rows from a register and, if there are rows of two,
+// from the next one.
 template <class T, class Function>
 TAUT_INLINE void with_sources(const RowSpread& rows, Function f) {
   const Spread<T> spread(rows);
   if (rows.last < rows.from + lanes<T>) {
     f([&](const T* from, const T*) __attribute__((always_inline)) { return spread.of(from); });
   } else {
-    f([&](const T* from, const T* next) __attribute__((always_inline)) { return spread.of(from, next); });
+    f([&](const T* from, const T* next)
+          __attribute__((always_inline)) { return spread.of(from, next); });
   }
 }
 
 template <class T>
-void add_update(const FrontShape& child, const T* update, const RowRun* runs, Int run_count, const RowSpread* spreads, Int spread_count,
-                const FrontShape& parent, T* target, bool target_is_panel) {
+void add_update(const FrontShape& child, const T* update, const RowRun* runs, Int run_count,
+                const RowSpread* spreads, Int spread_count, const FrontShape& parent, T* target,
+                bool target_is_panel) {
   constexpr Int r = slab_rows<T>;
   // Divisions by a constant.
-  const FrontShape small{child.columns, child.padding, child.rows, r}, large{parent.columns, parent.padding, parent.rows, r};
+  const FrontShape small{child.columns, child.padding, child.rows, r},
+      large{parent.columns, parent.padding, parent.rows, r};
   const auto rows_of = [&](Int row) __attribute__((always_inline)) {
     return update + small.update_offset(row / r) + row % r - child.columns * r;
   };
   for (const RowSpread* rows = spreads; rows < spreads + spread_count; ++rows) {
     const T *first = rows_of(rows->from), *second = rows_of(rows->from + lanes<T>);
     T* sums = target + rows->to % r +
-              (target_is_panel ? large.panel_offset(rows->to / r) : large.update_offset(rows->to / r) - parent.columns * r);
-    with_sources<T>(
-        *rows, [&](auto source) __attribute__((always_inline)) {
-          for (const RowRun* run = runs; run < runs + run_count && run->from <= rows->last; ++run) {
-            const Int left = rows->last + 1 - run->from, count = run->count < left ? run->count : left;
-            const T *from = first + run->from * r, *next = second + run->from * r;
-            T* sum = sums + run->to * r;
-            for (Int j = 0; j < count; ++j, from += r, next += r, sum += r) store<T>(sum, load(sum) + source(from, next));
-          }
-        });
+              (target_is_panel ? large.panel_offset(rows->to / r)
+                               : large.update_offset(rows->to / r) - parent.columns * r);
+    with_sources<T>(*rows, [&](auto source) __attribute__((always_inline)) {
+      for (const RowRun* run = runs; run < runs + run_count && run->from <= rows->last; ++run) {
+        const Int left = rows->last + 1 - run->from, count = run->count < left ? run->count : left;
+        const T *from = first + run->from * r, *next = second + run->from * r;
+        T* sum = sums + run->to * r;
+        for (Int j = 0; j < count; ++j, from += r, next += r, sum += r)
+          store<T>(sum, load(sum) + source(from, next));
+      }
+    });
   }
 }
 
 template <class T>
 void add_rows(const RowSpread* spreads, Int count, const T* from, T* to) {
   for (const RowSpread* rows = spreads; rows < spreads + count; ++rows)
-    with_sources<T>(
-        *rows, [&](auto source) __attribute__((always_inline)) {
-          const T* first = from + rows->from;
-          store<T>(to + rows->to, load(to + rows->to) + source(first, first + lanes<T>));
-        });
+    with_sources<T>(*rows, [&](auto source) __attribute__((always_inline)) {
+      const T* first = from + rows->from;
+      store<T>(to + rows->to, load(to + rows->to) + source(first, first + lanes<T>));
+    });
 }
 
 #include "taut/linalg/block_cholesky/front_solves.inl"
@@ -467,8 +509,9 @@ void add_rows(const RowSpread* spreads, Int count, const T* from, T* to) {
 template <class T>
 constexpr FrontKernels<T> kernels_of(const char* name) {
   static_assert(lanes<T> <= RowSpread::most_lanes);
-  return {name,           lanes<T>,     slab_rows<T>,    group,    panel_columns<T>, &eliminate<T>, &form_update<T>,
-          &add_update<T>, &add_rows<T>, &packed_size<T>, &pack<T>, &forward<T>,      &backward<T>};
+  return {name,          lanes<T>,        slab_rows<T>,   group,        panel_columns<T>,
+          &eliminate<T>, &form_update<T>, &add_update<T>, &add_rows<T>, &packed_size<T>,
+          &pack<T>,      &forward<T>,     &backward<T>};
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
-// Packing and solves of front_kernels.h; included by front_kernels.inl inside its namespaces, whose vectors it uses.
+// Packing and solves of front_kernels.h; included by front_kernels.inl inside its namespaces, whose
+// vectors it uses.
 
-// The packed panel. Its rows come in pieces of whole vectors, as a front's vector does; at a group's end and at the front's, parts of one.
+// The packed panel. Its rows come in pieces of whole vectors, as a front's vector does; at a
+// group's end and at the front's, parts of one.
 
 constexpr Int line_bytes = 64;
 template <class T>
@@ -8,7 +10,8 @@ constexpr Int line = line_bytes / static_cast<Int>(sizeof(T));
 // Rows of the last piece are padded to this.
 template <class T>
 constexpr Int row_unit = lanes<T> < 4 ? lanes<T> : 4;
-// How far ahead of their use packed panels are asked for, into the second-level cache: panels of different fronts lie one after the other.
+// How far ahead of their use packed panels are asked for, into the second-level cache: panels of
+// different fronts lie one after the other.
 template <class T>
 constexpr Int prefetch_distance = 4096 / static_cast<Int>(sizeof(T));
 
@@ -20,7 +23,8 @@ TAUT_INLINE void prefetch_at(const T* p, Int distance, Int count) {
 
 constexpr Int rounded_up(Int n, Int unit) { return (n + unit - 1) / unit * unit; }
 
-// Elements of a group of `width` pivots before row `end`: the triangle, the rows below, what fills the last cache line.
+// Elements of a group of `width` pivots before row `end`: the triangle, the rows below, what fills
+// the last cache line.
 template <class T>
 TAUT_INLINE Int group_size(Int width, Int end, Int rows) {
   const Int padded = rounded_up(rows, row_unit<T>);
@@ -36,7 +40,8 @@ TAUT_INLINE Int first_width(const FrontShape& shape) {
 template <class T>
 TAUT_INLINE std::int64_t group_offset(const FrontShape& shape, Int end) {
   std::int64_t offset = 0;
-  for (Int e = group; e < end; e += group) offset += group_size<T>(e == group ? first_width<T>(shape) : group, e, shape.rows);
+  for (Int e = group; e < end; e += group)
+    offset += group_size<T>(e == group ? first_width<T>(shape) : group, e, shape.rows);
   return offset;
 }
 
@@ -44,7 +49,8 @@ TAUT_INLINE std::int64_t group_offset(const FrontShape& shape, Int end) {
 template <class T>
 std::int64_t packed_size(const FrontShape& shape) {
   const Int in_last = rounded_up(shape.rows, row_unit<T>) % lanes<T>;
-  return group_offset<T>(shape, shape.columns + group) + (in_last > 0 ? rounded_up(lanes<T> - in_last, line<T>) : 0);
+  return group_offset<T>(shape, shape.columns + group) +
+         (in_last > 0 ? rounded_up(lanes<T> - in_last, line<T>) : 0);
 }
 
 // Calls f with the width as a constant.
@@ -58,8 +64,9 @@ TAUT_INLINE void with_width(Int width, Function f) {
   }
 }
 
-// Walks over the rows end ... rows-1 in pieces that no vector's border cuts: whole(row, a) for whole vectors, part(row, low, stride, a) for
-// parts of one, which begins at `row` and whose lanes low ... are the piece; a: the piece's first column, `stride`: from there to the next.
+// Walks over the rows end ... rows-1 in pieces that no vector's border cuts: whole(row, a) for
+// whole vectors, part(row, low, stride, a) for parts of one, which begins at `row` and whose lanes
+// low ... are the piece; a: the piece's first column, `stride`: from there to the next.
 template <class T, Int Width, class Pointer, class Whole, class Part>
 TAUT_INLINE void for_pieces(Int end, Int rows, Pointer a, Whole whole, Part part) {
   constexpr Int l = lanes<T>;
@@ -101,7 +108,9 @@ struct SlabCursor {
   Int width, columns;  // of this slab, of the last ones
 
   TAUT_INLINE SlabCursor(const FrontShape& shape, const T* panel, Int number)
-      : slab(panel + shape.panel_offset(number)), width(shape.panel_width(number)), columns(shape.columns) {}
+      : slab(panel + shape.panel_offset(number)),
+        width(shape.panel_width(number)),
+        columns(shape.columns) {}
   TAUT_INLINE void next() {
     slab += width * slab_rows<T>;
     width = width + slab_rows<T> < columns ? width + slab_rows<T> : columns;
@@ -114,21 +123,23 @@ TAUT_INLINE void pack_group(SlabCursor<T> cursor, Int first, Int end, Int rows, 
   constexpr Int r = slab_rows<T>, l = lanes<T>;
   const T* triangle = cursor.slab + first * r + (end - group) % r;
 #pragma GCC unroll 8
-  for (Int j = 0; j < Width; ++j) __builtin_memcpy(to + j * group, triangle + j * r, group * sizeof(T));
+  for (Int j = 0; j < Width; ++j)
+    __builtin_memcpy(to + j * group, triangle + j * r, group * sizeof(T));
   for_pieces<T, Width>(
       end, rows, to + Width * group,
-      [&](Int row, T * piece) __attribute__((always_inline)) {
+      [&](Int row, T* piece) __attribute__((always_inline)) {
         if (row % r == 0) cursor.next();
         const T* from = cursor.slab + first * r + row % r;
 #pragma GCC unroll 8
         for (Int j = 0; j < Width; ++j) store(piece + j * l, load(from + j * r));
       },
-      [&](Int row, Int low, Int stride, T * piece) __attribute__((always_inline)) {
+      [&](Int row, Int low, Int stride, T* piece) __attribute__((always_inline)) {
         if (low == 0 && row % r == 0) cursor.next();
         const T* from = cursor.slab + first * r + row % r + low;
         for (Int i = 0; i < stride; i += row_unit<T>)
 #pragma GCC unroll 8
-          for (Int j = 0; j < Width; ++j) __builtin_memcpy(piece + j * stride + i, from + j * r + i, row_unit<T> * sizeof(T));
+          for (Int j = 0; j < Width; ++j)
+            __builtin_memcpy(piece + j * stride + i, from + j * r + i, row_unit<T> * sizeof(T));
       });
 }
 
@@ -143,8 +154,9 @@ void pack(const FrontShape& shape, const T* panel, T* packed, Int begin, Int end
     if (c > begin && c % r == 0) cursor.next();
     if (c == 0 && shape.padding > 0) {
       const Int width = first_width<T>(shape);
-      with_width<group - 1>(
-          width, [&]<Int Width>() __attribute__((always_inline)) { pack_group<T, Width>(cursor, shape.padding, group, rows, to); });
+      with_width<group - 1>(width, [&]<Int Width>() __attribute__((always_inline)) {
+        pack_group<T, Width>(cursor, shape.padding, group, rows, to);
+      });
       to += group_size<T>(width, group, rows);
     } else {
       pack_group<T, group>(cursor, c, c + group, rows, to);
@@ -192,7 +204,8 @@ TAUT_INLINE void forward_group(const T* packed, Int end, Int rows, T* y) {
         for (Int j = 0; j < Width; ++j) {
           sum[j % 2] += load(a + j * stride - low) * factor[j];
         }
-        store<T>(y + row, load(y + row) - masked<T>(sum[0] + sum[1], piece_mask<T>(row, low, rows)));
+        store<T>(y + row,
+                 load(y + row) - masked<T>(sum[0] + sum[1], piece_mask<T>(row, low, rows)));
       });
 }
 
@@ -200,8 +213,9 @@ template <class T>
 void forward(const FrontShape& shape, const T* packed, T* y) {
   if (shape.columns == 0) return;
   const Int width = first_width<T>(shape);
-  with_width(
-      width, [&]<Int Width>() __attribute__((always_inline)) { forward_group<T, Width>(packed, group, shape.rows, y); });
+  with_width(width, [&]<Int Width>() __attribute__((always_inline)) {
+    forward_group<T, Width>(packed, group, shape.rows, y);
+  });
   packed += group_size<T>(width, group, shape.rows);
   for (Int end = 2 * group; end <= shape.columns; end += group) {
     forward_group<T, group>(packed, end, shape.rows, y);
@@ -209,14 +223,17 @@ void forward(const FrontShape& shape, const T* packed, T* y) {
   }
 }
 
-// Half of the lanes of two vectors seen as segments: of each segment its lower (Upper = 0) or upper (1) half.
+// Half of the lanes of two vectors seen as segments: of each segment its lower (Upper = 0) or upper
+// (1) half.
 template <class T, Int Segment, Int Upper, std::size_t... I>
 TAUT_INLINE Vector<T> halves_of_segments(Vector<T> a, Vector<T> b, std::index_sequence<I...>) {
   constexpr Int half = Segment / 2;
-  return __builtin_shufflevector(a, b, (static_cast<Int>(I) / half * Segment + Upper * half + static_cast<Int>(I) % half)...);
+  return __builtin_shufflevector(
+      a, b, (static_cast<Int>(I) / half * Segment + Upper * half + static_cast<Int>(I) % half)...);
 }
 
-// x[k] -= the sum of v[k]'s lanes, for a group: a tree that halves the segments that belong to one k while it halves the number of vectors.
+// x[k] -= the sum of v[k]'s lanes, for a group: a tree that halves the segments that belong to one
+// k while it halves the number of vectors.
 template <class T, Int Segment = lanes<T>, Int Count = group>
 TAUT_INLINE void subtract_lane_sums(const Vector<T>* v, T* x) {
   if constexpr (Segment == 1) {
@@ -228,13 +245,15 @@ TAUT_INLINE void subtract_lane_sums(const Vector<T>* v, T* x) {
     Vector<T> next[left];
     for (Int k = 0; k < left; ++k) {
       const Vector<T> a = v[2 * k], b = v[2 * k + 1 < Count ? 2 * k + 1 : 2 * k];
-      next[k] = halves_of_segments<T, Segment, 0>(a, b, all) + halves_of_segments<T, Segment, 1>(a, b, all);
+      next[k] = halves_of_segments<T, Segment, 0>(a, b, all) +
+                halves_of_segments<T, Segment, 1>(a, b, all);
     }
     subtract_lane_sums<T, Segment / 2, left>(next, x);
   }
 }
 
-// x of the group's pivots, from the last to the first, each taken out of all before it at once: no sum waits for another.
+// x of the group's pivots, from the last to the first, each taken out of all before it at once: no
+// sum waits for another.
 template <class T, Int Width>
 TAUT_INLINE void backward_triangle(const T* triangle, T* x) {
   T value[Width];
@@ -286,6 +305,7 @@ void backward(const FrontShape& shape, const T* packed, T* y) {
   }
   const Int width = first_width<T>(shape);
   packed -= group_size<T>(width, group, shape.rows);
-  with_width(
-      width, [&]<Int Width>() __attribute__((always_inline)) { backward_group<T, Width>(packed, group, shape.rows, y); });
+  with_width(width, [&]<Int Width>() __attribute__((always_inline)) {
+    backward_group<T, Width>(packed, group, shape.rows, y);
+  });
 }

@@ -21,9 +21,12 @@ constexpr Index rows_worth_sharing = 128;
 }  // namespace
 
 template <class T>
-NumericFactor<T>::NumericFactor(const SupernodeTree& tree, const CondensedGraph& graph, std::span<const Index> condensed_at, const FrontKernels<T>& kernels)
+NumericFactor<T>::NumericFactor(const SupernodeTree& tree, const CondensedGraph& graph,
+                                std::span<const Index> condensed_at, const FrontKernels<T>& kernels)
     : kernels_(kernels),
-      layout_(make_factor_layout(tree, graph, condensed_at, {kernels_.lanes, kernels_.slab_rows, kernels_.column_group, kernels_.packed_size})) {
+      layout_(make_factor_layout(
+          tree, graph, condensed_at,
+          {kernels_.lanes, kernels_.slab_rows, kernels_.column_group, kernels_.packed_size})) {
   gathered_ = AlignedArray<T>(layout_.gathered_size + read_too_many);
   packed_ = AlignedArray<T>(layout_.packed_size);
   vectors_[0] = AlignedArray<T>(layout_.vector_size);
@@ -62,7 +65,8 @@ void NumericFactor<T>::take_dims(const FactorSource& source) {
   basis_.clear();
   if (pattern.uniform_dim != 3)
     for (std::size_t k = 0; k < dim_.size(); ++k)
-      if (const Index dim = pattern.dim(layout_.node[k]); dim != 3) take(k, dim), not_plain_.push_back(k);
+      if (const Index dim = pattern.dim(layout_.node[k]); dim != 3)
+        take(k, dim), not_plain_.push_back(k);
   for_each_projected(source.basis.dim, [&](Index node) {
     const Index k = layout_.place[node];
     if (k < 0) return;
@@ -77,18 +81,21 @@ void NumericFactor<T>::take_dims(const FactorSource& source) {
 }
 
 template <class T>
-Status NumericFactor<T>::factorize(const FactorSource& source, std::span<const Index> start, std::span<const FactorLoad> loads) {
+Status NumericFactor<T>::factorize(const FactorSource& source, std::span<const Index> start,
+                                   std::span<const FactorLoad> loads) {
   assert(loads.size() <= vectors_.size());
   if (planned_threads_ != thread_count()) plan();
   if (loads.size() > 1 && vectors_[1].bytes() == 0) {
     vectors_[1] = AlignedArray<T>(layout_.vector_size);
     condensed_vectors_[1] = AlignedArray<T>(condensed_vectors_[0].size());
   }
-  if (!source.replaced.empty() && replacement_.addend.empty()) replacement_ = plan_replacement(source.replaced, *source.a.pattern, layout_);
+  if (!source.replaced.empty() && replacement_.addend.empty())
+    replacement_ = plan_replacement(source.replaced, *source.a.pattern, layout_);
   take_dims(source);
   first_bad_condensed_.store(std::numeric_limits<Index>::max(), std::memory_order_relaxed);
   gather(source);
-  if (first_bad_condensed_.load(std::memory_order_relaxed) < layout_.condensed) return verdict(source.a);
+  if (first_bad_condensed_.load(std::memory_order_relaxed) < layout_.condensed)
+    return verdict(source.a);
   const auto run = [&](Index t) {
     const FlushSubnormals flush;
     const FrontTask& task = layout_.task[t];
@@ -142,7 +149,9 @@ template <class T>
 void NumericFactor<T>::pack(const Front& front, const T* panel, bool shared) {
   T* packed = packed_.data() + front.packed;
   const Index group = kernels_.column_group;
-  const auto pack_groups = [&](Index begin, Index end) { kernels_.pack(front.shape, panel, packed, group * begin, group * end); };
+  const auto pack_groups = [&](Index begin, Index end) {
+    kernels_.pack(front.shape, panel, packed, group * begin, group * end);
+  };
   if (shared) {
     parallel_for(front.shape.columns / group, 8, pack_groups);
   } else {
@@ -151,7 +160,8 @@ void NumericFactor<T>::pack(const Front& front, const T* panel, bool shared) {
 }
 
 template <class T>
-void NumericFactor<T>::add_children(const Front& front, T* scratch, T* target, bool target_is_panel, bool shared) {
+void NumericFactor<T>::add_children(const Front& front, T* scratch, T* target, bool target_is_panel,
+                                    bool shared) {
   for (Index i = front.child_begin; i < front.child_end; ++i) {
     const Front& child = layout_.front[layout_.child[i]];
     const T* update = update_of(child, scratch);
@@ -161,7 +171,8 @@ void NumericFactor<T>::add_children(const Front& front, T* scratch, T* target, b
     // Each spread has rows of its own.
     const auto add = [&](Index begin, Index end) {
       const FlushSubnormals flush;
-      kernels_.add_update(child.shape, update, layout_.run.data() + first_run, end_of_runs - first_run, layout_.spread.data() + first_spread + begin,
+      kernels_.add_update(child.shape, update, layout_.run.data() + first_run,
+                          end_of_runs - first_run, layout_.spread.data() + first_spread + begin,
                           end - begin, front.shape, target, target_is_panel);
     };
     const Index spreads = child.spread_end - first_spread;
@@ -175,10 +186,12 @@ void NumericFactor<T>::add_children(const Front& front, T* scratch, T* target, b
 
 template <class T>
 BadPivot NumericFactor<T>::factor_panel(const Front& front, T* panel, bool shared) const {
-  const Index slabs = front.shape.slabs(), columns = front.shape.columns, step = kernels_.panel_columns;
+  const Index slabs = front.shape.slabs(), columns = front.shape.columns,
+              step = kernels_.panel_columns;
   for (Index begin = 0; begin < columns; begin += step) {
     const Index end = std::min(columns, begin + step), first = begin / kernels_.slab_rows;
-    const Index below = shared ? std::min(slabs, (end + kernels_.slab_rows - 1) / kernels_.slab_rows) : slabs;
+    const Index below =
+        shared ? std::min(slabs, (end + kernels_.slab_rows - 1) / kernels_.slab_rows) : slabs;
     const BadPivot bad = kernels_.eliminate(front.shape, panel, first, below, begin, end);
     if (bad.column >= 0) return bad;
     parallel_for(slabs - below, 2, [&](Index b, Index e) {
@@ -189,13 +202,14 @@ BadPivot NumericFactor<T>::factor_panel(const Front& front, T* panel, bool share
   return {};
 }
 
-// The first bad pivot in the order of elimination: nodes and fronts that do not depend on each other are all eliminated, so it does not
-// depend on the threads.
+// The first bad pivot in the order of elimination: nodes and fronts that do not depend on each
+// other are all eliminated, so it does not depend on the threads.
 template <class T>
 Status NumericFactor<T>::verdict(const BlockCsr& a) {
   if (const Index k = first_bad_condensed_.load(std::memory_order_relaxed); k < layout_.condensed) {
     BadPivot bad = condense_projected(k);  // its blocks are as they were
-    if (bad.column < 0) bad = {2, 0.0};    // good by a rounding that the first pass had the other way
+    // good by a rounding that the first pass had the other way
+    if (bad.column < 0) bad = {2, 0.0};
     return failure(a, k, bad.column, bad.value);
   }
   const auto it = std::find(fate_.begin(), fate_.end(), Fate::bad_pivot);
@@ -214,8 +228,10 @@ Status NumericFactor<T>::failure(const BlockCsr& a, Index k, Index component, do
   const char* precision = sizeof(T) == 4 ? "single" : "double";
   const bool finite = std::isfinite(pivot);
   return {finite ? Outcome::not_positive_definite : Outcome::not_finite,
-          fmt::format("Cholesky (block, {} precision): pivot {:.3g} at unknown {} (node {}): {}", precision, pivot, unknown, node,
-                      finite ? "the matrix is not positive definite" : "the matrix holds NaN or infinity, or overflows this precision")};
+          fmt::format("Cholesky (block, {} precision): pivot {:.3g} at unknown {} (node {}): {}",
+                      precision, pivot, unknown, node,
+                      finite ? "the matrix is not positive definite"
+                             : "the matrix holds NaN or infinity, or overflows this precision")};
 }
 
 template class NumericFactor<float>;

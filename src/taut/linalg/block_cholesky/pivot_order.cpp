@@ -13,7 +13,8 @@ struct Descendants {
   std::vector<Offset> start;  // per place
   std::vector<Index> supernode;
 
-  explicit Descendants(const SupernodeTree& tree) : start(tree.order.size() + 1), supernode(tree.row.size()) {
+  explicit Descendants(const SupernodeTree& tree)
+      : start(tree.order.size() + 1), supernode(tree.row.size()) {
     for (const Index k : tree.row) ++start[k + 1];
     for (std::size_t k = 0; k < tree.order.size(); ++k) start[k + 1] += start[k];
     std::vector<Offset> next(start.begin(), start.end() - 1);
@@ -21,7 +22,9 @@ struct Descendants {
       for (const Index k : tree.rows(s)) supernode[static_cast<std::size_t>(next[k]++)] = s;
   }
 
-  std::span<const Index> of(Index k) const { return {supernode.data() + start[k], supernode.data() + start[k + 1]}; }
+  std::span<const Index> of(Index k) const {
+    return {supernode.data() + start[k], supernode.data() + start[k + 1]};
+  }
 };
 
 class TourBuilder {
@@ -57,7 +60,8 @@ class TourBuilder {
     Offset shortest = std::numeric_limits<Offset>::max();
     std::size_t at = 0;
     for (std::size_t i = 0; i <= tour_.size(); ++i) {
-      const Offset longer = (i == 0 ? nothing : from_v_[i - 1]) + (i == tour_.size() ? nothing : from_v_[i]) - step_[i];
+      const Offset longer = (i == 0 ? nothing : from_v_[i - 1]) +
+                            (i == tour_.size() ? nothing : from_v_[i]) - step_[i];
       if (longer < shortest) shortest = longer, at = i;
     }
     const auto place = static_cast<std::ptrdiff_t>(at);

@@ -1,5 +1,6 @@
 #pragma once
-// Four numbers at any address: three of a node and one more, nobody's. What reads or writes them says where the fourth one is.
+// Four numbers at any address: three of a node and one more, nobody's. What reads or writes them
+// says where the fourth one is.
 
 #include "taut/base/simd.h"
 

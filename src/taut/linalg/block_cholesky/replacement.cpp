@@ -9,7 +9,9 @@ namespace taut {
 namespace {
 
 // Multiplies A_ac in the block of two corners, counted a, b, c, d; only blocks that have a place.
-constexpr float factor_of(int corner, int other) { return (corner + other) % 2 == 1 ? 1.0f : -1.0f; }
+constexpr float factor_of(int corner, int other) {
+  return (corner + other) % 2 == 1 ? 1.0f : -1.0f;
+}
 
 struct Planned {
   Index block;  // of FactorLayout::row_value
@@ -19,21 +21,28 @@ struct Planned {
 
 }  // namespace
 
-Replacement plan_replacement(std::span<const Parallelogram> replaced, const BlockPattern& pattern, const FactorLayout& layout) {
+Replacement plan_replacement(std::span<const Parallelogram> replaced, const BlockPattern& pattern,
+                             const FactorLayout& layout) {
   std::vector<std::vector<Planned>> rows(static_cast<std::size_t>(pattern.rows()));
   for (const Parallelogram& p : replaced) {
     const Index corners[] = {p.a, p.b, p.c, p.d};
     for (int k = 0; k < 4; ++k) {
       const Index row = corners[k], place = layout.place[row];
-      // A's block from the nearer row: it is read about now. Not from the last one, where nothing may be read behind it.
+      // A's block from the nearer row: it is read about now. Not from the last one, where nothing
+      // may be read behind it.
       const bool from_c = p.c + 1 < pattern.rows() && std::abs(row - p.c) < std::abs(row - p.a);
       const Index source = from_c ? p.c : p.a;
-      const Offset value = pattern.value_start[source] + pattern.block_offset[from_c ? p.opposite : p.block];
+      const Offset value =
+          pattern.value_start[source] + pattern.block_offset[from_c ? p.opposite : p.block];
       for (int l = 0; l < 4; ++l) {
         const Index other = layout.place[corners[l]];
         if (other < place || (k != l && (k + l) % 2 == 0 && k % 2 == 0)) continue;
-        const Index block = layout.row_start[row] + find_block(layout, place, other) - layout.block_start[place];
-        rows[row].push_back({block, factor_of(k, l), {static_cast<Index>(value - pattern.value_start[row]), pattern.width(source)}});
+        const Index block =
+            layout.row_start[row] + find_block(layout, place, other) - layout.block_start[place];
+        rows[row].push_back(
+            {block,
+             factor_of(k, l),
+             {static_cast<Index>(value - pattern.value_start[row]), pattern.width(source)}});
       }
     }
   }
@@ -45,7 +54,8 @@ Replacement plan_replacement(std::span<const Parallelogram> replaced, const Bloc
     std::ranges::stable_sort(row, {}, &Planned::block);
     for (const Planned& planned : row) {
       ++result.count[planned.block];
-      assert(result.factor[planned.block] == 0.0f || result.factor[planned.block] == planned.factor);
+      assert(result.factor[planned.block] == 0.0f ||
+             result.factor[planned.block] == planned.factor);
       result.factor[planned.block] = planned.factor;
       result.addend.push_back(planned.addend);
     }
@@ -55,7 +65,8 @@ Replacement plan_replacement(std::span<const Parallelogram> replaced, const Bloc
 }
 
 Offset Replacement::bytes() const {
-  return static_cast<Offset>(addend.size() * sizeof(Addend) + (row_start.size() + count.size() + factor.size()) * sizeof(Index));
+  return static_cast<Offset>(addend.size() * sizeof(Addend) +
+                             (row_start.size() + count.size() + factor.size()) * sizeof(Index));
 }
 
 }  // namespace taut

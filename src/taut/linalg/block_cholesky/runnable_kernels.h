@@ -1,5 +1,6 @@
 #pragma once
-// The choice among the compiled kernels (front_kernels.h, which the kernels themselves include and which must stay free of library code).
+// The choice among the compiled kernels (front_kernels.h, which the kernels themselves include and
+// which must stay free of library code).
 
 #include <vector>
 
@@ -7,7 +8,8 @@
 
 namespace taut {
 
-// All that this machine can run: x86-64-v4, x86-64-v3, plain. The plain ones are always there and come last.
+// All that this machine can run: x86-64-v4, x86-64-v3, plain. The plain ones are always there and
+// come last.
 template <class T>
 std::vector<const FrontKernels<T>*> runnable_front_kernels();
 

@@ -1,20 +1,25 @@
 #pragma once
-// Supernodes: runs of nodes that are eliminated together as one dense front, and the tree they form (Liu 1992, SIAM Review 34, the
-// multifrontal method).
+// Supernodes: runs of nodes that are eliminated together as one dense front, and the tree they form
+// (Liu 1992, SIAM Review 34, the multifrontal method).
 //
-// A fundamental supernode holds columns of equal structure. Small ones are merged into their parents even where that stores zeros ("relaxed
-// amalgamation", Ashcraft & Grimes 1989), as long as a count of the work says that the larger front is cheaper than two small ones:
+// A fundamental supernode holds columns of equal structure. Small ones are merged into their
+// parents even where that stores zeros ("relaxed amalgamation", Ashcraft & Grimes 1989), as long as
+// a count of the work says that the larger front is cheaper than two small ones:
 //
-//   work(front) = a madds + b (entries of the panel) + c (entries of the update) + d          merge while work(merged) < work(child) +
-//   work(parent)
+//   work(front) = a madds + b (entries of the panel) + c (entries of the update) + d          merge
+//   while work(merged) < work(child) + work(parent)
 //
 // All of it is about nodes; weight[i] = unknowns of node i, at least 1.
 //
 //   order[k]                          the node eliminated as the k-th
-//   supernode s                       the nodes order[first[s]] ... order[first[s+1]-1]; parent[s] > s or -1; subtrees are numbered in one
-//   piece row[row_start[s]] ... ascending   places k in the order of the nodes below the pivots of s with an entry of L in them
-//   factor_entries                    entries of L in the lower triangle, with the diagonal, before amalgamation (and pivot_order.h)
-//   factor_flops                      multiplications and additions of the factorisation, likewise: sum over columns of (entries)²
+//   supernode s                       the nodes order[first[s]] ... order[first[s+1]-1]; parent[s]
+//                                     > s or -1; subtrees are numbered in one
+//   piece row[row_start[s]] ... ascending   places k in the order of the nodes below the pivots of
+//                                           s with an entry of L in them
+//   factor_entries                    entries of L in the lower triangle, with the diagonal, before
+//                                     amalgamation (and pivot_order.h)
+//   factor_flops                      multiplications and additions of the factorisation, likewise:
+//                                     sum over columns of (entries)²
 
 #include <span>
 #include <vector>
@@ -33,11 +38,14 @@ struct SupernodeTree {
   double factor_flops = 0.0;
 
   Index supernodes() const { return static_cast<Index>(parent.size()); }
-  std::span<const Index> rows(Index s) const { return {row.data() + row_start[s], row.data() + row_start[s + 1]}; }
+  std::span<const Index> rows(Index s) const {
+    return {row.data() + row_start[s], row.data() + row_start[s + 1]};
+  }
 };
 
-// `order`: a fill-reducing order of the graph's nodes; the result's order is another one with the same fill-in but for what
-// amalgamation adds.
-SupernodeTree make_supernode_tree(const NodeGraph& graph, std::vector<Index> order, std::span<const Index> weight);
+// `order`: a fill-reducing order of the graph's nodes; the result's order is another one with the
+// same fill-in but for what amalgamation adds.
+SupernodeTree make_supernode_tree(const NodeGraph& graph, std::vector<Index> order,
+                                  std::span<const Index> weight);
 
 }  // namespace taut

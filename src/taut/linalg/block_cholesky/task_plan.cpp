@@ -8,8 +8,8 @@ namespace taut {
 
 namespace {
 
-// Subtrees with less than all work / (threads x this) are one task: enough of them to balance the threads, few enough that their updates,
-// which get places of their own, stay small.
+// Subtrees with less than all work / (threads x this) are one task: enough of them to balance the
+// threads, few enough that their updates, which get places of their own, stay small.
 constexpr double tasks_per_thread = 12.0;
 // Work worth handing over to another thread (some 10 microseconds).
 constexpr double least_work = 5e5;
@@ -28,14 +28,16 @@ std::vector<double> subtree_work(const FactorLayout& layout) {
   return work;
 }
 
-// Places updates so that a front's own does not overlap its children's, and panels so that they overlap neither. Where children may run at
-// the same time, their whole subtrees are kept apart; else only their updates are.
+// Places updates so that a front's own does not overlap its children's, and panels so that they
+// overlap neither. Where children may run at the same time, their whole subtrees are kept apart;
+// else only their updates are.
 class ArenaPlan {
  public:
   ArenaPlan(FactorLayout& layout, std::span<const std::uint8_t> is_shared)
       : layout_(layout), is_shared_(is_shared), peak_(layout.front.size(), 0) {}
 
-  // Subtrees are planned relative to their own begin, upwards, since their sizes are needed first; then moved, from the roots down.
+  // Subtrees are planned relative to their own begin, upwards, since their sizes are needed first;
+  // then moved, from the roots down.
   void plan() {
     const Index n = static_cast<Index>(layout_.front.size());
     std::vector<Offset> begin(layout_.front.size(), 0);  // of a subtree relative to its parent's
@@ -72,7 +74,8 @@ class ArenaPlan {
       const Index c = layout_.child[i];
       const Front& child = layout_.front[c];
       begin[c] = next;
-      const Offset update_begin = next + child.update, update_end = update_begin + child.shape.update_size();
+      const Offset update_begin = next + child.update,
+                   update_end = update_begin + child.shape.update_size();
       live_.push_back({update_begin, update_end});
       peak = std::max(peak, next + peak_[c]);
       next = is_shared_[s] ? next + peak_[c] : std::max(next, update_end);
@@ -113,7 +116,8 @@ void plan_tasks(FactorLayout& layout, int threads) {
   double total = 0.0;
   for (const Front& f : layout.front)
     if (f.parent < 0) total += work[&f - layout.front.data()];
-  const double limit = threads == 1 ? total : std::max(least_work, total / (tasks_per_thread * threads));
+  const double limit =
+      threads == 1 ? total : std::max(least_work, total / (tasks_per_thread * threads));
 
   std::vector<std::uint8_t> is_shared(layout.front.size());
   for (Index s = 0; s < n; ++s) is_shared[s] = work[s] > limit;
@@ -128,7 +132,8 @@ void plan_tasks(FactorLayout& layout, int threads) {
     if (!is_shared[s] && !ends_subtree) continue;
     // Small neighbouring subtrees with the same parent (or none) become one task.
     const bool joins_last = ends_subtree && !layout.task.empty() && !layout.task.back().shared &&
-                            layout.front[layout.task.back().end - 1].parent == p && last_work + work[s] <= limit;
+                            layout.front[layout.task.back().end - 1].parent == p &&
+                            last_work + work[s] <= limit;
     if (joins_last) {
       layout.task.back().end = s + 1;
     } else {

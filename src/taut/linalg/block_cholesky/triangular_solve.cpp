@@ -39,7 +39,9 @@ TAUT_ALWAYS_INLINE void copy_few(const T* from, Index count, T* to) {
 }
 
 // x may be anything where beta is 0.
-TAUT_ALWAYS_INLINE double sum_with(double value, double beta, double x) { return beta == 0.0 ? value : value + beta * x; }
+TAUT_ALWAYS_INLINE double sum_with(double value, double beta, double x) {
+  return beta == 0.0 ? value : value + beta * x;
+}
 
 template <class T>
 double norm2_of_entries(const T* begin, const T* end) {
@@ -71,7 +73,8 @@ void NumericFactor<T>::forward(Index s, const FactorVectors& vectors, const doub
     T* to = y + layout_.node_column[k];
     if (basis_of_[k] >= 0) {
       const Mat3& q = basis_[basis_of_[k]];
-      for (Index r = 0; r < dim_[k]; ++r) to[r] = static_cast<T>(vectors.scale * q.col(r).dot(Eigen::Map<const Vec3>(from)));
+      for (Index r = 0; r < dim_[k]; ++r)
+        to[r] = static_cast<T>(vectors.scale * q.col(r).dot(Eigen::Map<const Vec3>(from)));
     } else if (dim_[k] == 3) {
       for (Index r = 0; r < 3; ++r) to[r] = static_cast<T>(vectors.scale * from[r]);
     } else {
@@ -81,10 +84,12 @@ void NumericFactor<T>::forward(Index s, const FactorVectors& vectors, const doub
   const double condensed_norm2 = forward_condensed(front, vectors, b, slot);
   for (Index i = front.child_begin; i < front.child_end; ++i) {
     const Front& child = layout_.front[layout_.child[i]];
-    kernels_.add_rows(layout_.spread.data() + child.spread_begin, child.spread_end - child.spread_begin, all + child.vector, y);
+    kernels_.add_rows(layout_.spread.data() + child.spread_begin,
+                      child.spread_end - child.spread_begin, all + child.vector, y);
   }
   kernels_.forward(front.shape, packed_.data() + front.packed, y);
-  norm2_[slot][s] = condensed_norm2 + norm2_of_entries(y + front.shape.padding, y + front.shape.columns);
+  norm2_[slot][s] =
+      condensed_norm2 + norm2_of_entries(y + front.shape.padding, y + front.shape.columns);
 }
 
 template <class T>
@@ -95,7 +100,8 @@ void NumericFactor<T>::backward(Index s, const FactorVectors& vectors, double be
     const T* from = vectors_[0].data() + layout_.front[front.parent].vector;
     for (Index q = front.run_begin; q < front.run_end; ++q) {
       const RowRun& run = layout_.run[q];
-      copy_few(from + run.to, run.count, y + run.from);  // what is too much is written over by the next
+      // what is too much is written over by the next
+      copy_few(from + run.to, run.count, y + run.from);
     }
   }
   kernels_.backward(front.shape, packed_.data() + front.packed, y);
@@ -105,12 +111,15 @@ void NumericFactor<T>::backward(Index s, const FactorVectors& vectors, double be
     double* to = x + vectors.start[k];
     if (basis_of_[k] >= 0) {
       Vec3 expanded = Vec3::Zero();
-      for (Index r = 0; r < dim_[k]; ++r) expanded += static_cast<double>(from[r]) * basis_[basis_of_[k]].col(r);
+      for (Index r = 0; r < dim_[k]; ++r)
+        expanded += static_cast<double>(from[r]) * basis_[basis_of_[k]].col(r);
       for (Index r = 0; r < 3; ++r) to[r] = sum_with(scale * expanded[r], beta, to[r]);
     } else if (dim_[k] == 3) {
-      for (Index r = 0; r < 3; ++r) to[r] = sum_with(scale * static_cast<double>(from[r]), beta, to[r]);
+      for (Index r = 0; r < 3; ++r)
+        to[r] = sum_with(scale * static_cast<double>(from[r]), beta, to[r]);
     } else {
-      for (Index r = 0; r < dim_[k]; ++r) to[r] = sum_with(scale * static_cast<double>(from[r]), beta, to[r]);
+      for (Index r = 0; r < dim_[k]; ++r)
+        to[r] = sum_with(scale * static_cast<double>(from[r]), beta, to[r]);
     }
   }
   backward_condensed(front, vectors, beta, x);
