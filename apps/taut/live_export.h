@@ -12,7 +12,7 @@ class LiveExport : public RunObserver {
   // Into DIR/FORMAT. `inner` must outlive it. Throws InputError as SequenceExport.
   LiveExport(const ResultsFolder& results, const std::string& format, RunObserver& inner);
 
-  void on_step(const StepRecord& record, int steps_total) override {
+  void on_step(const StepReport& record, int steps_total) override {
     inner_.on_step(record, steps_total);
   }
   void on_message(const std::string& text) override { inner_.on_message(text); }

@@ -29,7 +29,7 @@ std::string pace(double steps_per_s) {
 // those before it.
 class Pace {
  public:
-  void note(const StepRecord& r, int steps_total) {
+  void note(const StepReport& r, int steps_total) {
     if (first_step_ == 0) first_step_ = r.step;
     elapsed_ = timer_.milliseconds() / 1000.0;
     steps_per_s_ = elapsed_ > 0.0 ? (r.step - first_step_ + 1) / elapsed_ : 0.0;
@@ -70,7 +70,7 @@ class LineProgress : public RunObserver {
     if (terminal_ && on_line_) fmt::print(stderr, "\n");
   }
 
-  void on_step(const StepRecord& r, int steps_total) override {
+  void on_step(const StepReport& r, int steps_total) override {
     pace_.note(r, steps_total);
     // Ten times a second is smooth for the eye; a log file wants a line in five seconds at most.
     const double pause = terminal_ ? 0.1 : 5.0;
@@ -120,7 +120,7 @@ class JsonProgress : public RunObserver {
  public:
   explicit JsonProgress(const Scene& scene) : steps_per_frame_(scene.time.steps_per_frame) {}
 
-  void on_step(const StepRecord& r, int steps_total) override {
+  void on_step(const StepReport& r, int steps_total) override {
     pace_.note(r, steps_total);
     print({{"step", r.step},
            {"steps", steps_total},

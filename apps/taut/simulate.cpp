@@ -9,8 +9,8 @@ namespace taut::app {
 
 namespace {
 
-void print_summary(const RunSummary& s, const Simulation& simulation, const ResultsFolder& results,
-                   bool picture) {
+void print_summary(const RunSummary& s, const SceneSimulation& simulation,
+                   const ResultsFolder& results, bool picture) {
   const Scene& scene = simulation.scene();
   fmt::print("\n");
   if (!scene.title.empty()) fmt::print("{}\n\n", scene.title);
@@ -55,8 +55,8 @@ void print_summary(const RunSummary& s, const Simulation& simulation, const Resu
 
 }  // namespace
 
-int simulate(Simulation& simulation, const ResultsFolder& results, const SimulateOptions& options,
-             int first_frame) {
+int simulate(SceneSimulation& simulation, const ResultsFolder& results,
+             const SimulateOptions& options, int first_frame) {
   RunSummary summary;
   int exported = -1;  // 0: failed
   {

@@ -16,7 +16,7 @@ struct SimulateOptions {
 };
 
 // Returns the exit code.
-int simulate(Simulation& simulation, const ResultsFolder& results, const SimulateOptions& options,
-             int first_frame);
+int simulate(SceneSimulation& simulation, const ResultsFolder& results,
+             const SimulateOptions& options, int first_frame);
 
 }  // namespace taut::app

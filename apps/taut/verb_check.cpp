@@ -4,7 +4,7 @@
 #include "taut/base/error.h"
 #include "taut/io/obj.h"
 #include "taut/scene/scene_file.h"
-#include "taut/sim/simulation.h"
+#include "taut/scene/scene_simulation.h"
 #include "verbs.h"
 
 namespace taut::app {
@@ -21,7 +21,7 @@ void refuse_own_mesh(const Scene& scene, const std::filesystem::path& out) {
           fmt::format("is the mesh of {} itself; give another file with --out", whose));
   };
   for (const Cloth& cloth : scene.cloths) refuse(cloth.mesh, "cloth '" + cloth.name + "'");
-  for (const Solid& solid : scene.solids) refuse(solid.mesh, "solid '" + solid.name + "'");
+  for (const SolidEntry& solid : scene.solids) refuse(solid.mesh, "solid '" + solid.name + "'");
 }
 
 // Where cloths start, an OBJ each: FILE.obj, or FILE_NAME.obj of several.
@@ -46,7 +46,8 @@ void write_start(const Scene& scene, const ClothModel& cloth, const std::filesys
   }
 }
 
-void say_untangled(const Simulation& simulation, const std::string& path, const std::string& out) {
+void say_untangled(const SceneSimulation& simulation, const std::string& path,
+                   const std::string& out) {
   const UntangleReport* report =
       simulation.surface_contact() ? simulation.surface_contact()->untangled() : nullptr;
   if (!report) {
@@ -68,7 +69,7 @@ int check(const std::string& path, std::vector<std::string> settings, bool untan
   Scene scene = read_scene(path, settings);
   const std::vector<std::string> doubts = doubtful(scene);
   // Building the model reads the meshes and finds what the file alone cannot show.
-  const Simulation simulation(std::move(scene));
+  const SceneSimulation simulation(std::move(scene));
   const ClothModel& cloth = simulation.cloth();
   std::size_t springs = 0;
   for (const auto& model : cloth.springs()) springs += model->springs().size();

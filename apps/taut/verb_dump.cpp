@@ -24,12 +24,12 @@ int dump(const DumpArguments& arguments) {
   if (!arguments.solver.empty()) settings.push_back("solver.name=" + arguments.solver);
   if (arguments.tolerance > 0.0)
     settings.push_back(fmt::format("solver.tolerance={:.17g}", arguments.tolerance));
-  Simulation simulation(read_scene(arguments.scene, settings));
+  SceneSimulation simulation(read_scene(arguments.scene, settings));
   DumpOutcome outcome;
   {
     const auto progress = make_progress(
         arguments.quiet ? ProgressStyle::quiet : ProgressStyle::automatic, simulation.scene());
-    outcome = dump_step(simulation, arguments.step, arguments.out, [&](const StepRecord& record) {
+    outcome = dump_step(simulation, arguments.step, arguments.out, [&](const StepReport& record) {
       progress->on_step(record, arguments.step);
     });
   }

@@ -23,7 +23,7 @@ int resume(const ResumeArguments& arguments) {
   results.refuse_running();
   std::vector<std::string> settings;
   if (arguments.frames > 0) settings.push_back(fmt::format("time.frames={}", arguments.frames));
-  Simulation simulation(read_scene(results.scene_file(), settings));
+  SceneSimulation simulation(read_scene(results.scene_file(), settings));
   const CheckpointPlace place = results.read_checkpoint(simulation);
   const int frames = simulation.scene().time.frames;
   if (place.frame > frames)

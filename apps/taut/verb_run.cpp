@@ -32,7 +32,7 @@ int run_scene(const RunArguments& arguments) {
                                   ? std::filesystem::path("out") /
                                         std::filesystem::path(arguments.scene).stem()
                                   : std::filesystem::path(arguments.out));
-  Simulation simulation(std::move(scene));
+  SceneSimulation simulation(std::move(scene));
   for (const std::string& note : results.start(simulation))
     if (style != ProgressStyle::quiet) fmt::print(stderr, "note: {}\n", note);
   return simulate(simulation, results, {style, !arguments.no_picture, arguments.export_format}, 0);

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "program.h"
-#include "sim/tangled_scenes.h"
+#include "scene/tangled_scenes.h"
 
 namespace taut::test {
 namespace {

@@ -8,7 +8,7 @@
 #include "taut/base/parallel.h"
 #include "taut/results/checkpoint.h"
 #include "taut/scene/scene_file.h"
-#include "taut/sim/simulation.h"
+#include "taut/scene/scene_simulation.h"
 
 namespace taut {
 namespace {
@@ -17,7 +17,7 @@ Scene shipped(const std::string& name, const std::vector<std::string>& settings)
   return read_scene(std::string(TAUT_SOURCE_DIR) + "/scenes/" + name + ".toml", settings);
 }
 
-std::vector<std::array<Index, 2>> judged(const Simulation& simulation) {
+std::vector<std::array<Index, 2>> judged(const SceneSimulation& simulation) {
   const SurfaceContact& contact = *simulation.surface_contact();
   const CollisionSurface& surface = contact.contact().surface();
   const std::vector<Vec3> x = contact.positions(simulation.state().time, simulation.state().x);
@@ -39,12 +39,12 @@ class ContactScene : public testing::TestWithParam<ShortForm> {};
 TEST_P(ContactScene, NothingEverIntersects) {
   if (!test::judge_available()) GTEST_SKIP() << test::no_judge;
   const ShortForm& form = GetParam();
-  Simulation simulation(shipped(form.scene, form.settings));
+  SceneSimulation simulation(shipped(form.scene, form.settings));
   ASSERT_TRUE(judged(simulation).empty()) << "at the start";
   int most_pairs = 0;
   double zone_steps = 0.0;
   for (int k = 1; k <= form.steps; ++k) {
-    StepRecord record;
+    StepReport record;
     const Status status = simulation.step(record);
     ASSERT_TRUE(status.ok()) << status.message;
     ASSERT_EQ(record.intersections, 0) << "by Taut's own check, step " << k;
@@ -74,8 +74,8 @@ struct End {
 };
 
 End run(const Scene& scene, int steps) {
-  Simulation simulation(scene);
-  StepRecord record;
+  SceneSimulation simulation(scene);
+  StepReport record;
   for (int k = 0; k < steps; ++k) EXPECT_TRUE(simulation.step(record).ok());
   EXPECT_GT(record.pushing_pairs, 0);
   return {simulation.state(), simulation.surface_contact()->state()};
@@ -98,17 +98,17 @@ TEST(ContactSimulation, SameBitsForAnyNumberOfThreads) {
 
 TEST(ContactSimulation, ResumesToTheSameBitsInTheMidstOfZones) {
   const Scene scene = shipped("clump", zones_only);
-  Simulation simulation(scene);
-  StepRecord record;
+  SceneSimulation simulation(scene);
+  StepReport record;
   int steps = 0;
   while (simulation.surface_contact()->state().zones.node.empty() && ++steps < 300)
     ASSERT_TRUE(simulation.step(record).ok());
   ASSERT_LT(steps, 300) << "no zone was ever kept";
   EXPECT_GT(record.zone_nodes, 0);
-  Simulation resumed(scene);
+  SceneSimulation resumed(scene);
   resumed.restore(simulation.state(), simulation.contact().state(), simulation.steps_done(),
                   simulation.stepper().solver().memory(), simulation.surface_contact()->state());
-  Simulation forgetful(scene);
+  SceneSimulation forgetful(scene);
   forgetful.restore(simulation.state(), simulation.contact().state(), simulation.steps_done(),
                     simulation.stepper().solver().memory());
   bool zones_matter = false;
@@ -126,18 +126,18 @@ TEST(ContactSimulation, ResumesToTheSameBitsInTheMidstOfZones) {
 // What pushes a pair is where the next step begins.
 TEST(ContactSimulation, ResumesToTheSameBitsInAHeap) {
   const Scene scene = shipped("clump", {"cloth.grid.nodes=[25,25]"});
-  Simulation simulation(scene);
-  StepRecord record;
+  SceneSimulation simulation(scene);
+  StepReport record;
   for (int k = 0; k < 200; ++k) ASSERT_TRUE(simulation.step(record).ok());
   const ClothContactState& contact = simulation.surface_contact()->state();
   ASSERT_GT(contact.forces.size(), 100u);
   const auto solver_memory = simulation.stepper().solver().memory();
-  Simulation resumed(scene), forgetful(scene);
+  SceneSimulation resumed(scene), forgetful(scene);
   resumed.restore(simulation.state(), simulation.contact().state(), simulation.steps_done(),
                   solver_memory, contact);
   forgetful.restore(simulation.state(), simulation.contact().state(), simulation.steps_done(),
                     solver_memory, {contact.zones, {}});
-  for (Simulation* s : {&simulation, &resumed, &forgetful}) ASSERT_TRUE(s->step(record).ok());
+  for (SceneSimulation* s : {&simulation, &resumed, &forgetful}) ASSERT_TRUE(s->step(record).ok());
   EXPECT_EQ(resumed.state().x, simulation.state().x);
   EXPECT_EQ(resumed.state().v, simulation.state().v);
   EXPECT_EQ(resumed.surface_contact()->state(), simulation.surface_contact()->state());
@@ -146,17 +146,17 @@ TEST(ContactSimulation, ResumesToTheSameBitsInAHeap) {
 }
 
 TEST(ContactSimulation, NodesOfZonesAreEliminatedInTheNextStep) {
-  Simulation simulation(shipped("clump", zones_only));
-  StepRecord record;
+  SceneSimulation simulation(shipped("clump", zones_only));
+  StepReport record;
   int steps = 0;
   while (simulation.surface_contact()->state().zones.node.empty() && ++steps < 300)
     ASSERT_TRUE(simulation.step(record).ok());
   ASSERT_LT(steps, 300);
   const std::vector<Index> held = simulation.surface_contact()->state().zones.node;
   int eliminated = -1;
-  simulation.on_solved = [&](Simulation& s, const SolveSummary&) {
+  simulation.on_solved = [&](const SolveSummary&) {
     eliminated = 0;
-    for (const Index node : held) eliminated += s.constraints().ndof(node) == 0;
+    for (const Index node : held) eliminated += simulation.constraints().ndof(node) == 0;
   };
   ASSERT_TRUE(simulation.step(record).ok());
   EXPECT_EQ(eliminated, static_cast<int>(held.size()));
@@ -203,17 +203,17 @@ Momentum momentum(std::span<const double> mass, std::span<const Vec3> x, std::sp
 // Two sheets thrown at each other where there is nothing else: whatever the response does in a
 // step, it neither pushes nor turns the whole.
 TEST(ContactSimulation, ResponseKeepsTheMomentumOfAnIsolatedClump) {
-  Simulation simulation(read_scene_text(thrown, "/scenes/test.toml", {}));
+  SceneSimulation simulation(read_scene_text(thrown, "/scenes/test.toml", {}));
   const auto mass = simulation.cloth().external().masses();
   std::vector<Vec3> x0, x_solved, v_solved;
-  simulation.on_solved = [&](Simulation& s, const SolveSummary&) {
-    x0 = s.state().x;
-    x_solved.assign(s.stepper().x_end().begin(), s.stepper().x_end().end());
-    v_solved.assign(s.stepper().v_end().begin(), s.stepper().v_end().end());
+  simulation.on_solved = [&](const SolveSummary&) {
+    x0 = simulation.state().x;
+    x_solved.assign(simulation.stepper().x_end().begin(), simulation.stepper().x_end().end());
+    v_solved.assign(simulation.stepper().v_end().begin(), simulation.stepper().v_end().end());
   };
   int impacts = 0, steps_moved = 0;
   for (int k = 0; k < 40; ++k) {
-    StepRecord record;
+    StepReport record;
     ASSERT_TRUE(simulation.step(record).ok());
     impacts += record.impacts;
     if (record.retries > 0) continue;  // then on_solved saw another step than the last
@@ -236,7 +236,7 @@ TEST(ContactSimulation, ResponseKeepsTheMomentumOfAnIsolatedClump) {
 
 // An integrator of second order does not end with the velocity that its way took.
 TEST(ContactSimulation, ResponseKeepsMomentumWhateverTheVelocityAtTheEnd) {
-  Simulation simulation(read_scene_text(thrown, "/scenes/test.toml", {}));
+  SceneSimulation simulation(read_scene_text(thrown, "/scenes/test.toml", {}));
   const auto mass = simulation.cloth().external().masses();
   const double h = 0.02;
   const State& start = simulation.state();
@@ -276,7 +276,7 @@ density = 0.15
 
 TEST(ContactSimulation, AStartWithIntersectionsIsRefusedWithTheirPlaces) {
   try {
-    Simulation simulation(read_scene_text(crossed, "/scenes/test.toml", {}));
+    SceneSimulation simulation(read_scene_text(crossed, "/scenes/test.toml", {}));
     FAIL() << "not refused";
   } catch (const InputError& error) {
     const std::string text = error.what();
@@ -284,10 +284,10 @@ TEST(ContactSimulation, AStartWithIntersectionsIsRefusedWithTheirPlaces) {
          {"cloth 'flat'", "cloth 'upright'", "the triangle", "contact.allow_intersections"})
       EXPECT_NE(text.find(part), std::string::npos) << text;
   }
-  Simulation allowed(read_scene_text(crossed, "/scenes/test.toml",
-                                     std::vector<std::string>{"contact.allow_intersections=true"}));
-  Simulation without(read_scene_text(crossed, "/scenes/test.toml",
-                                     std::vector<std::string>{"contact.self=false"}));
+  SceneSimulation allowed(read_scene_text(
+      crossed, "/scenes/test.toml", std::vector<std::string>{"contact.allow_intersections=true"}));
+  SceneSimulation without(read_scene_text(crossed, "/scenes/test.toml",
+                                          std::vector<std::string>{"contact.self=false"}));
   EXPECT_EQ(without.surface_contact(), nullptr);
 }
 
@@ -300,9 +300,9 @@ TEST(ContactSimulation, StopsWhereClothIsCrushedAndNamesThePlace) {
     solid.key_frames = {{0.0, {Eigen::Quaterniond::Identity(), Vec3(0, 0, 0.065 * side)}},
                         {0.2, {Eigen::Quaterniond::Identity(), Vec3(0, 0, 0.05 * side)}}};
   }
-  Simulation simulation(scene);
+  SceneSimulation simulation(scene);
   Status status;
-  StepRecord record;
+  StepReport record;
   double good_time = 0.0;
   for (int k = 0; k < 80 && status.ok(); ++k) {
     good_time = simulation.state().time;

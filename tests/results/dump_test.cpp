@@ -94,7 +94,7 @@ class Dump : public testing::TestWithParam<DumpCase> {
     // Not auto: what it takes depends on the solves before.
     const std::vector<std::string> settings{"solver.name=core_fast", "solver.tolerance=1e-9",
                                             "solver.core=" + c.core};
-    Simulation simulation(read_scene_text(c.scene, folder / "scene.toml", settings));
+    SceneSimulation simulation(read_scene_text(c.scene, folder / "scene.toml", settings));
     const DumpOutcome outcome = dump_step(simulation, c.step, folder / c.name);
     EXPECT_TRUE(outcome.status.ok()) << outcome.status.message;
     files = std::make_unique<DumpFiles>(folder / c.name);
@@ -241,7 +241,7 @@ INSTANTIATE_TEST_SUITE_P(Cases, Dump, testing::ValuesIn(dump_cases()),
 
 TEST(DumpFolder, RefusesOthersFilesAndReplacesItsOwn) {
   const test::TemporaryFolder folder;
-  Simulation simulation(read_scene_text(dump_cases()[0].scene, folder / "scene.toml"));
+  SceneSimulation simulation(read_scene_text(dump_cases()[0].scene, folder / "scene.toml"));
   ASSERT_TRUE(dump_step(simulation, 1, folder / "dump").status.ok());
   const auto first = read_file(folder / "dump/dv.mtx");
   ASSERT_TRUE(dump_step(simulation, 2, folder / "dump").status.ok());

@@ -69,7 +69,7 @@ class PictureOfAResult : public ::testing::Test {
 
   ResultsFolder results_;
   Scene scene_;
-  Simulation simulation_;
+  SceneSimulation simulation_;
 };
 
 double share(const Image& image, const std::function<bool(int r, int g, int b)>& holds) {

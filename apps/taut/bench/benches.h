@@ -51,7 +51,7 @@ std::vector<std::string> methods_of(const BenchOptions& options);
 int side_of(int nodes);
 // Steps until the first contact, then `more` of them. Throws InputError when a step fails or there
 // is no contact in 1000 steps.
-void run_into_contact(Simulation& simulation, int more);
+void run_into_contact(SceneSimulation& simulation, int more);
 
 // One phase of a step, measured alone.
 struct RooflineRow {

@@ -32,7 +32,7 @@ struct Means {
   double near = 0, impulse = 0, detect = 0, zone = 0, contact = 0, check = 0, step = 0, tested = 0,
          pairs = 0, impacts = 0, zone_nodes = 0;
 
-  void add(const StepRecord& r) {
+  void add(const StepReport& r) {
     ++steps;
     near += r.near_ms, impulse += r.impulse_ms, detect += r.detect_ms, zone += r.zone_ms,
         contact += r.contact_ms, check += r.check_ms;
@@ -50,7 +50,7 @@ struct Means {
   }
 };
 
-Json to_json(const std::string& scene, const StepRecord& r, int threads) {
+Json to_json(const std::string& scene, const StepReport& r, int threads) {
   return {{"scene", scene},
           {"nodes", r.nodes},
           {"solver", r.solver},
@@ -72,7 +72,7 @@ Json to_json(const std::string& scene, const StepRecord& r, int threads) {
           {"intersections", r.intersections}};
 }
 
-void advance(Simulation& simulation, StepRecord& record) {
+void advance(SceneSimulation& simulation, StepReport& record) {
   if (const Status status = simulation.step(record); !status.ok()) throw InputError(status.message);
 }
 
@@ -88,8 +88,9 @@ void measure(const Experiment& e, const BenchOptions& options, TextTable& table,
   std::vector<std::string> settings{fmt::format("cloth.grid.nodes=[{0},{0}]", side),
                                     "solver.name=auto"};
   if (e.step > 0.0) settings.push_back(fmt::format("time.step={}", e.step));
-  Simulation simulation(read_scene(fmt::format("{}/{}.toml", options.scenes, e.scene), settings));
-  StepRecord record;
+  SceneSimulation simulation(
+      read_scene(fmt::format("{}/{}.toml", options.scenes, e.scene), settings));
+  StepReport record;
   Means means;
   while (simulation.state().time < e.skip + e.measure) {
     advance(simulation, record);
@@ -119,7 +120,7 @@ class FrameJudge {
  public:
   explicit FrameJudge(std::string program) : program_(std::move(program)) {}
 
-  void judge(const Simulation& simulation, Trial& trial) const {
+  void judge(const SceneSimulation& simulation, Trial& trial) const {
     const SurfaceContact* contact = simulation.surface_contact();
     if (program_.empty() || contact == nullptr) return;
     const CollisionSurface& surface = contact->contact().surface();
@@ -168,10 +169,10 @@ Trial run_trial(Scene read, const BenchOptions& options, int seed) {
   Trial trial;
   const int steps_per_frame = read.time.steps_per_frame;
   const FrameJudge frame_judge(options.judge);
-  Simulation simulation(std::move(read));
+  SceneSimulation simulation(std::move(read));
   frame_judge.judge(simulation, trial);
   while (trial.steps < steps) {
-    StepRecord record;
+    StepReport record;
     const Status status = simulation.step(record);
     if (!status.ok()) {
       trial.end = "stopped: " + status.message;

@@ -62,17 +62,17 @@ class Flatness {
 
   Json run() {
     const std::string grid = fmt::format("cloth.grid.nodes=[{0},{0}]", side_);
-    Simulation simulation(
+    SceneSimulation simulation(
         read_scene(options_.scenes + "/ball.toml",
                    std::vector<std::string>{grid, "cloth.k_stretch=6000", "time.step=3.67e-3",
                                             "time.frames=100000"}));
     fmt::print(stderr, "flatness: {} nodes, up to {} steps into contact ...\n", side_ * side_,
                steps_in_contact);
     run_into_contact(simulation, steps_in_contact);
-    simulation.on_solved = [&](Simulation& s, const SolveSummary&) {
-      if (rows_.empty()) measure_cells(s);
+    simulation.on_solved = [&](const SolveSummary&) {
+      if (rows_.empty()) measure_cells(simulation);
     };
-    StepRecord record;
+    StepReport record;
     simulation.step(record);
     print_end();
     return std::move(rows_);
@@ -88,7 +88,7 @@ class Flatness {
     return header;
   }
 
-  void measure_cells(Simulation& simulation) {
+  void measure_cells(SceneSimulation& simulation) {
     const std::vector<FlatnessCell> cells = cells_of(options_);
     const Timer timer;
     for (const FlatnessCell& cell : cells) {
@@ -105,12 +105,12 @@ class Flatness {
     fmt::print("{}\n", table_.text());
   }
 
-  void measure_cell(Simulation& simulation, const FlatnessCell& cell) {
+  void measure_cell(SceneSimulation& simulation, const FlatnessCell& cell) {
     Scene scene = simulation.scene();
     SpringMaterial& material = scene.cloths[0].material;
     material.k_stretch = cell.k_stretch, material.k_shear = cell.k_shear,
     material.k_bend = cell.k_bend;
-    const ClothModel cloth(scene);
+    const ClothModel cloth(make_world(scene).world);
     const auto stepper_for = [&](const char* solver) {
       auto stepper = std::make_unique<Stepper>(
           cloth.nodes(), cloth.force_models(), cloth.external(),

@@ -67,15 +67,15 @@ ConstraintSet in_frames(const ConstraintSet& constraints, const FrameKind& kind)
 }
 
 void measure(const Experiment& experiment, const BenchOptions& options, Json& rows) {
-  Simulation simulation(
+  SceneSimulation simulation(
       read_scene(fmt::format("{}/{}.toml", options.scenes, experiment.scene),
                  std::vector<std::string>{"solid.0.friction=0", "solver.name=core_fast",
                                           "time.frames=100000"}));
   run_into_contact(simulation, experiment.steps_in_contact);
   TextTable table({"method", "U", "iterations", "cond(M^-1 A~)"});
   Index sliding = 0;
-  simulation.on_solved = [&](Simulation& s, const SolveSummary&) {
-    LinearSystem system = s.stepper().system();
+  simulation.on_solved = [&](const SolveSummary&) {
+    LinearSystem system = simulation.stepper().system();
     const ConstraintSet original = *system.constraints;
     sliding = static_cast<Index>(std::ranges::count(original.ndofs(), std::int8_t{2}));
     system.guess = {};
@@ -92,7 +92,7 @@ void measure(const Experiment& experiment, const BenchOptions& options, Json& ro
         table.add({method, kind.name, fmt::format("{}", summary.iterations),
                    fmt::format("{:.3g}", ends.largest / ends.smallest)});
         rows.push_back({{"scene", experiment.scene},
-                        {"nodes", s.cloth().nodes()},
+                        {"nodes", simulation.cloth().nodes()},
                         {"solver", method},
                         {"frames", kind.name},
                         {"iterations", summary.iterations},
@@ -101,7 +101,7 @@ void measure(const Experiment& experiment, const BenchOptions& options, Json& ro
       table.add_rule();
     }
   };
-  StepRecord record;
+  StepReport record;
   simulation.step(record);
   fmt::print(
       "{}\n{}: {} nodes, {} of them with two free directions; tolerance {:g}. The condition is "

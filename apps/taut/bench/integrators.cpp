@@ -67,9 +67,10 @@ class Integrators {
         fmt::format("time.integrator={}", name_of(kind)),
         "solver.name=core_fast",
         "solver.tolerance=1e-6"};
-    Simulation simulation(read_scene(fmt::format("{}/{}.toml", options_.scenes, scene), settings));
+    SceneSimulation simulation(
+        read_scene(fmt::format("{}/{}.toml", options_.scenes, scene), settings));
     Motion motion;
-    StepRecord record;
+    StepReport record;
     const Timer timer;
     for (int step = 0; step < longest_steps * refinement && motion.failure.empty(); ++step) {
       const Status status = simulation.step(record);

@@ -48,7 +48,7 @@ struct Assembly {
 
 class Campaign {
  public:
-  Campaign(Simulation& simulation, const std::vector<Method>& methods,
+  Campaign(SceneSimulation& simulation, const std::vector<Method>& methods,
            const MeasureOptions& options)
       : simulation_(simulation), options_(options) {
     for (const Method& method : methods) {
@@ -232,7 +232,7 @@ class Campaign {
     bench.cell.equal_error_iterations += needed;
   }
 
-  Simulation& simulation_;
+  SceneSimulation& simulation_;
   MeasureOptions options_;
   std::vector<Bench> benches_;
   std::vector<Assembly> assemblies_;
@@ -243,11 +243,11 @@ class Campaign {
 
 }  // namespace
 
-std::vector<Cell> measure(Simulation& simulation, const std::vector<Method>& methods,
-                          const MeasureOptions& options,
-                          const std::function<bool(const Simulation&, const StepRecord&)>& start) {
+std::vector<Cell> measure(
+    SceneSimulation& simulation, const std::vector<Method>& methods, const MeasureOptions& options,
+    const std::function<bool(const SceneSimulation&, const StepReport&)>& start) {
   const int most_steps = simulation.scene().time.frames * simulation.scene().time.steps_per_frame;
-  StepRecord record;
+  StepReport record;
   const auto advance = [&] {
     if (const Status status = simulation.step(record); !status.ok())
       throw InputError(status.message);
@@ -260,7 +260,7 @@ std::vector<Cell> measure(Simulation& simulation, const std::vector<Method>& met
     advance();
   } while (!start(simulation, record));
   Campaign campaign(simulation, methods, options);
-  simulation.on_solved = [&](Simulation&, const SolveSummary&) { campaign.measure_step(); };
+  simulation.on_solved = [&](const SolveSummary&) { campaign.measure_step(); };
   for (int step = 0; step < options.steps; ++step) advance();
   simulation.on_solved = nullptr;
   return campaign.cells();

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "taut/sim/simulation.h"
+#include "taut/scene/scene_simulation.h"
 
 namespace taut::app {
 
@@ -65,8 +65,8 @@ struct MeasureOptions {
 // `start` says whether the coming steps are to be measured; it is asked after each step until it is
 // true. Returns one cell a method. Throws InputError when the simulation fails or `start` never
 // comes true.
-std::vector<Cell> measure(Simulation& simulation, const std::vector<Method>& methods,
-                          const MeasureOptions& options,
-                          const std::function<bool(const Simulation&, const StepRecord&)>& start);
+std::vector<Cell> measure(
+    SceneSimulation& simulation, const std::vector<Method>& methods, const MeasureOptions& options,
+    const std::function<bool(const SceneSimulation&, const StepReport&)>& start);
 
 }  // namespace taut::app

@@ -40,7 +40,7 @@ constexpr double flops_per_spring_block = 120.0;
 // All phases of one step's system at the state the simulation is in.
 class Phases {
  public:
-  Phases(Simulation& simulation, std::vector<RooflineRow>& rows)
+  Phases(SceneSimulation& simulation, std::vector<RooflineRow>& rows)
       : simulation_(simulation), rows_(rows) {}
 
   void measure() {
@@ -149,7 +149,7 @@ class Phases {
                      milliseconds, bytes > 0.0 ? read_rate(bytes) : 0.0});
   }
 
-  Simulation& simulation_;
+  SceneSimulation& simulation_;
   std::vector<RooflineRow>& rows_;
 };
 
@@ -193,16 +193,16 @@ nlohmann::ordered_json bench_roofline(const BenchOptions& options, const Machine
     const int nodes = grid.side * grid.side;
     if (options.nodes.empty() ? nodes > 30'000 : !std::ranges::count(options.nodes, nodes))
       continue;
-    Simulation simulation(
+    SceneSimulation simulation(
         read_scene(options.scenes + "/ball.toml",
                    std::vector<std::string>{fmt::format("cloth.grid.nodes=[{0},{0}]", grid.side),
                                             fmt::format("time.step={}", grid.step),
                                             "solver.name=\"core_fast\"", "time.frames=100000"}));
     std::vector<RooflineRow> rows;
-    simulation.on_solved = [&](Simulation& s, const SolveSummary&) {
-      if (s.contact().contacts() > 0 && rows.empty()) Phases(s, rows).measure();
+    simulation.on_solved = [&](const SolveSummary&) {
+      if (simulation.contact().contacts() > 0 && rows.empty()) Phases(simulation, rows).measure();
     };
-    StepRecord record;
+    StepReport record;
     while (rows.empty())
       if (const Status status = simulation.step(record); !status.ok())
         throw InputError(status.message);

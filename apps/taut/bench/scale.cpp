@@ -96,7 +96,7 @@ class Scale {
         sizes.push_back(side * side);
     for (const int nodes : sizes) side_of(nodes);
     fmt::print(stderr, "scale: {} nodes into contact ...\n", start_side * start_side);
-    coarse_ = std::make_unique<Simulation>(sheet(start_side));
+    coarse_ = std::make_unique<SceneSimulation>(sheet(start_side));
     run_into_contact(*coarse_, 12);
     for (const int nodes : sizes) measure_size(side_of(nodes));
     fmt::print("{}\n", table_.text());
@@ -107,34 +107,38 @@ class Scale {
  private:
   static constexpr int start_side = 41, own_steps = 2;
 
-  Simulation sheet(int side) const {
+  Scene sheet(int side) const {
     const std::vector<std::string> settings{fmt::format("cloth.grid.nodes=[{0},{0}]", side),
                                             "cloth.k_stretch=6000", "time.step=3.67e-3",
                                             "time.frames=100000", "contact.self=false",
                                             // The answer of the step is the reference: it must be
                                             // better than what is measured against it.
                                             "solver.name=core_fast", "solver.tolerance=1e-9"};
-    return Simulation(read_scene(options_.scenes + "/ball.toml", settings));
+    return read_scene(options_.scenes + "/ball.toml", settings);
   }
 
   void measure_size(int side) {
     const int nodes = side * side;
     fmt::print(stderr, "scale: {} nodes ...\n", nodes);
-    Simulation simulation = sheet(side);
-    simulation.restore(interpolated(coarse_->state(), start_side, side), {}, coarse_->steps_done());
-    StepRecord record;
+    SceneSimulation simulation(sheet(side));
+    Snapshot start = simulation.save();
+    start.state = interpolated(coarse_->state(), start_side, side);
+    start.clock.steps = start.clock.since_origin = coarse_->steps_done();
+    start.clock.h = simulation.scene().time.step;
+    simulation.load(start);
+    StepReport record;
     for (int step = 0; step < own_steps; ++step)
       if (const Status status = simulation.step(record); !status.ok())
         throw InputError(status.message);
     bool measured = false;
-    simulation.on_solved = [&](Simulation& s, const SolveSummary&) {
-      if (!measured) measure_system(s, nodes);
+    simulation.on_solved = [&](const SolveSummary&) {
+      if (!measured) measure_system(simulation, nodes);
       measured = true;
     };
     simulation.step(record);
   }
 
-  void measure_system(Simulation& simulation, int nodes) {
+  void measure_system(SceneSimulation& simulation, int nodes) {
     LinearSystem system = simulation.stepper().system();
     const auto answer = flat(simulation.stepper().unknown());
     const std::vector<double> reference(answer.begin(), answer.end());
@@ -212,7 +216,7 @@ class Scale {
   std::vector<std::string> methods_;
   TextTable table_;
   std::map<std::string, std::vector<Sample>> samples_;
-  std::unique_ptr<Simulation> coarse_;
+  std::unique_ptr<SceneSimulation> coarse_;
   double product_ms_ = 0.0;  // with the matrix at hand
   Json rows_ = Json::array();
 };

@@ -34,9 +34,9 @@ int side_of(int nodes) {
   return side;
 }
 
-void run_into_contact(Simulation& simulation, int more) {
+void run_into_contact(SceneSimulation& simulation, int more) {
   constexpr int most_steps = 1000;
-  StepRecord record;
+  StepReport record;
   const auto advance = [&] {
     if (const Status status = simulation.step(record); !status.ok())
       throw InputError(status.message);

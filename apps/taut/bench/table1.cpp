@@ -15,15 +15,15 @@ struct Experiment {
   const char* paper_name;
   const char* file;
   // Whether the states from here on are those to measure.
-  bool (*start)(const Simulation&, const StepRecord&);
+  bool (*start)(const SceneSimulation&, const StepReport&);
 };
 
-bool swings(const Simulation& simulation, const StepRecord&) {
+bool swings(const SceneSimulation& simulation, const StepReport&) {
   return simulation.state().time >= 0.3;
 }
 
 // What has come to lie on the sphere lies there by then, held by friction or sliding.
-bool lies(const Simulation& simulation, const StepRecord&) {
+bool lies(const SceneSimulation& simulation, const StepReport&) {
   return simulation.state().time >= 0.9;
 }
 
@@ -62,7 +62,7 @@ std::vector<ReportRow> bench_table1(const BenchOptions& options) {
          options.stiffnesses.empty() ? std::vector<int>{60, 600, 6000} : options.stiffnesses) {
       fmt::print(stderr, "table1: {}, {} nodes at k_strh = {} ...\n", experiment.paper_name, nodes,
                  k);
-      Simulation simulation(
+      SceneSimulation simulation(
           read_scene(options.scenes + "/" + experiment.file, settings_of(nodes, k)));
       const auto cells =
           measure(simulation, methods, {options.tolerance, options.steps, 0, 1e-3, "cholmod"},

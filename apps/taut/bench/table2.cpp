@@ -92,12 +92,12 @@ std::vector<ReportRow> bench_table2(const BenchOptions& options) {
                                               // for the way there
                                               fmt::format("cloth.k_stretch={}", k),
                                               "solver.name=\"core_fast\""};
-      Simulation simulation(read_scene(options.scenes + "/ball.toml", settings));
+      SceneSimulation simulation(read_scene(options.scenes + "/ball.toml", settings));
       const auto cells = measure(
           simulation, methods,
           {options.tolerance, options.steps,
            is_large ? 4 * options.equal_error_every : options.equal_error_every, 1e-3, "cholmod"},
-          [](const Simulation&, const StepRecord& record) { return record.contacts > 0; });
+          [](const SceneSimulation&, const StepReport& record) { return record.contacts > 0; });
       const auto full = std::ranges::find_if(cells, [](const Cell& c) {
         return c.method.solver == "cholmod" && c.method.integrator == semi;
       });

@@ -95,4 +95,9 @@ double surface_distance(const Solid& solid, const Vec3& local) {
   return outside > 0.0 ? outside : beyond.maxCoeff();
 }
 
+double depth_inside(const Solid& solid, const Vec3& x, double time) {
+  if (solid.shape == SolidShape::mesh) return 0.0;
+  return solid.thickness - closest_surface(solid, solid.pose(time).to_local(x)).distance;
+}
+
 }  // namespace taut

@@ -10,7 +10,6 @@
 // and kinetic alike), no unit.
 
 #include <Eigen/Geometry>
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -44,14 +43,6 @@ struct Solid {
   Vec3 size = Vec3::Ones();
   double friction = 0.0;
   double thickness = 0.0;
-  // Of a mesh: OBJ, PLY or USD file, in the last which prim; its lengths' scale and upward axis;
-  // and where it deforms, a file of positions (io/motion_file.h), samples a second.
-  std::filesystem::path mesh, motion;
-  std::string prim;
-  double scale = 1.0;
-  bool y_up = false;
-  double motion_rate = 24.0;
-
   // Motion: between key frames positions are linear and rotations spherically linear in time;
   // before the first and after the last the pose is held. With no key frame the pose is `initial`
   // moved by the constant `velocity` (m/s) and turned by `angular_velocity` (rad/s, world axes,
@@ -75,5 +66,8 @@ struct SurfacePoint {
 SurfacePoint closest_surface(const Solid& solid, const Vec3& local);
 // Its distance alone, to the same bits.
 double surface_distance(const Solid& solid, const Vec3& local);
+// How deep a world point is inside the thickened solid at this time (s), m; not positive outside. 0
+// for meshes.
+double depth_inside(const Solid& solid, const Vec3& x, double time);
 
 }  // namespace taut

@@ -131,6 +131,8 @@ class SolidContact {
   std::vector<std::pair<Index, Obstacle>> touched(std::span<const Vec3> x_end) const;
 
   std::span<const Solid> solids() const { return solids_; }
+  // Another motion of the same solid, between steps.
+  void set_solid(std::size_t k, const Solid& solid) { solids_[k] = solid; }
   Index nodes() const { return nodes_; }
   int contacts() const { return static_cast<int>(contacts_.size()); }
   int sticking() const;  // nodes

@@ -48,6 +48,7 @@ void ExternalForces::evaluate(double time, std::span<const Vec3> x, std::span<co
     for (Index i = begin; i < end; ++i) {
       force_[i] = masses_[i] * gravity_;
       if (damped) force_[i] += damping_[i] * (wind - v[i]);
+      if (!applied_.empty()) force_[i] += applied_[i];
     }
   });
 }

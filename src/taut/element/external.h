@@ -22,6 +22,7 @@ struct WindOptions {
   double gust = 0.0;             // share of W
   double gust_frequency = 1.0;   // f, Hz
   Vec3 at(double time) const;
+  bool operator==(const WindOptions&) const = default;
 };
 
 class ExternalForces {
@@ -29,11 +30,17 @@ class ExternalForces {
   ExternalForces(std::vector<double> masses, Vec3 gravity, WindOptions wind);
   // kg/s for one node.
   void set_drag(Index node, double drag) { drag_[node] = drag; }
+  void set_gravity(const Vec3& gravity) { gravity_ = gravity; }
+  void set_wind(const WindOptions& wind) { wind_ = wind; }
+  // N, one a node, added to the others until it is set again; empty: none.
+  void set_applied(std::vector<Vec3> force) { applied_ = std::move(force); }
   // Triangles (node numbers of the whole system) that feel wind pressure, and its coefficient.
   void add_wind_surface(std::span<const Triangle> triangles, double pressure);
 
   std::span<const double> masses() const { return masses_; }
   const Vec3& gravity() const { return gravity_; }
+  const WindOptions& wind() const { return wind_; }
+  std::span<const Vec3> applied() const { return applied_; }
 
   // Recomputes force() and damping() for this state. Serial over triangles, parallel over nodes.
   void evaluate(double time, std::span<const Vec3> x, std::span<const Vec3> v);
@@ -50,7 +57,7 @@ class ExternalForces {
   Vec3 gravity_;
   WindOptions wind_;
   std::vector<Surface> surfaces_;
-  std::vector<Vec3> force_;
+  std::vector<Vec3> applied_, force_;
   std::vector<Mat3> damping_;
 };
 

@@ -1,31 +1,23 @@
 #pragma once
-// Everything needed to go on with a simulation to the same bits, as one binary file
-// (little-endian):
+// Everything needed to go on with a run to the same bits, as one binary file (little-endian):
 //
-//   "TAUTCKP5", then the scene as TOML (length, bytes), steps done, frame, time,
-//   has_previous, the arrays x, v, x_prev, v_prev, last (length, doubles), the contacts, the
-//   solver's memory, the nodes of rigid zones, what pushed the surface's pairs, sums of the mesh
-//   and motion files, and a checksum (FNV-1a, 64 bits) of all before it
+//   "TAUTCKP6", the scene as TOML (length, bytes), the frame, sums of the mesh and motion files,
+//   the simulation's snapshot (sim/snapshot.h; length, bytes), an FNV-1a sum of all before it
 
 #include <iosfwd>
 #include <string>
+#include <vector>
 
-#include "taut/contact/cloth_contact.h"
-#include "taut/contact/solid_contact.h"
-#include "taut/step/state.h"
+#include "taut/sim/snapshot.h"
 
 namespace taut {
 
 struct Checkpoint {
   std::string scene;  // TOML, all defaults filled in
-  int steps = 0;
   int frame = 0;
-  State state;
-  ContactState contacts;
-  std::vector<double> solver_memory;  // ConstrainedSolver::memory
-  ClothContactState surface_contact;
-  // sums of what mesh and motion files held (Simulation::input_files)
+  // sums of what mesh and motion files held (SceneSimulation::input_files)
   std::vector<std::uint64_t> files;
+  Snapshot snapshot;
 };
 
 void write(std::ostream& out, const Checkpoint& checkpoint);

@@ -4,7 +4,7 @@
 
 namespace taut {
 
-void draw_contact_sheet(const Simulation& simulation, const ResultsFolder& results) {
+void draw_contact_sheet(const SceneSimulation& simulation, const ResultsFolder& results) {
   constexpr int most_tiles = 6;
   const int count = results.frame_count();
   if (count == 0)

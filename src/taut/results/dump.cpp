@@ -120,7 +120,7 @@ void write_springs(const fs::path& path, const ClothModel& cloth, bool split) {
   write_file(path, text);
 }
 
-void write_vectors(const fs::path& folder, Simulation& simulation) {
+void write_vectors(const fs::path& folder, SceneSimulation& simulation) {
   const State& state = simulation.state();
   const Stepper& stepper = simulation.stepper();
   const LinearSystem system = stepper.system();
@@ -165,7 +165,7 @@ void prepare_dump(const fs::path& folder) {
   for (const char* name : own_names) fs::remove(folder / name);
 }
 
-void write_dump(const fs::path& folder, Simulation& simulation, const SolveSummary& summary) {
+void write_dump(const fs::path& folder, SceneSimulation& simulation, const SolveSummary& summary) {
   const ClothModel& cloth = simulation.cloth();
   const LinearSystem system = simulation.stepper().system();
   write_symmetric_matrix(folder / "A.mtx", *system.matrix, "the step's matrix, kg");
@@ -181,17 +181,17 @@ void write_dump(const fs::path& folder, Simulation& simulation, const SolveSumma
   write_file(folder / "meta.json", dump_meta(simulation, summary));
 }
 
-DumpOutcome dump_step(Simulation& simulation, int step, const fs::path& folder,
-                      const std::function<void(const StepRecord&)>& on_step) {
+DumpOutcome dump_step(SceneSimulation& simulation, int step, const fs::path& folder,
+                      const std::function<void(const StepReport&)>& on_step) {
   prepare_dump(folder);
   DumpOutcome outcome;
   while (simulation.steps_done() < step) {
     if (simulation.steps_done() + 1 == step)
-      simulation.on_solved = [&](Simulation& solved, const SolveSummary& summary) {
-        write_dump(folder, solved, summary);
+      simulation.on_solved = [&](const SolveSummary& summary) {
+        write_dump(folder, simulation, summary);
         outcome.summary = summary;
       };
-    StepRecord record;
+    StepReport record;
     outcome.status = simulation.step(record);
     simulation.on_solved = {};
     if (!outcome.status.ok()) break;

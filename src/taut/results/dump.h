@@ -30,7 +30,7 @@
 #include <filesystem>
 #include <functional>
 
-#include "taut/sim/simulation.h"
+#include "taut/scene/scene_simulation.h"
 
 namespace taut {
 
@@ -38,9 +38,9 @@ namespace taut {
 // anything else.
 void prepare_dump(const std::filesystem::path& folder);
 
-// Writes the system that `simulation` has just solved: to be called from Simulation::on_solved.
+// Writes the system that `simulation` has just solved: to be called from SceneSimulation::on_solved.
 // Step numbers count from 1.
-void write_dump(const std::filesystem::path& folder, Simulation& simulation,
+void write_dump(const std::filesystem::path& folder, SceneSimulation& simulation,
                 const SolveSummary& summary);
 
 struct DumpOutcome {
@@ -50,7 +50,7 @@ struct DumpOutcome {
 
 // Runs the scene to step `step` (from 1) and writes the system of its last contact pass. `on_step`
 // is told about every step and may be empty.
-DumpOutcome dump_step(Simulation& simulation, int step, const std::filesystem::path& folder,
-                      const std::function<void(const StepRecord&)>& on_step = {});
+DumpOutcome dump_step(SceneSimulation& simulation, int step, const std::filesystem::path& folder,
+                      const std::function<void(const StepReport&)>& on_step = {});
 
 }  // namespace taut

@@ -40,7 +40,7 @@ std::string common(const Scene& scene, Name name) {
 
 }  // namespace
 
-std::string dump_meta(Simulation& simulation, const SolveSummary& summary) {
+std::string dump_meta(SceneSimulation& simulation, const SolveSummary& summary) {
   const Scene& scene = simulation.scene();
   const State& state = simulation.state();
   const ConstraintSet& constraints = simulation.constraints();

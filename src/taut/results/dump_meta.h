@@ -3,11 +3,11 @@
 
 #include <string>
 
-#include "taut/sim/simulation.h"
+#include "taut/scene/scene_simulation.h"
 
 namespace taut {
 
-// As JSON text; to be called from Simulation::on_solved.
-std::string dump_meta(Simulation& simulation, const SolveSummary& summary);
+// As JSON text; to be called from SceneSimulation::on_solved.
+std::string dump_meta(SceneSimulation& simulation, const SolveSummary& summary);
 
 }  // namespace taut

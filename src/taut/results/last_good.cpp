@@ -7,7 +7,8 @@
 
 namespace taut {
 
-std::filesystem::path save_last_good(const Simulation& simulation, const ResultsFolder& results) {
+std::filesystem::path save_last_good(const SceneSimulation& simulation,
+                                     const ResultsFolder& results) {
   constexpr int width = 960, height = 800;
   constexpr double around = 0.05;  // m, in view about each node that could not be kept apart
   const std::filesystem::path folder = results.folder() / "last_good";

@@ -8,6 +8,7 @@
 #include "taut/base/error.h"
 #include "taut/base/file.h"
 #include "taut/scene/scene_file.h"
+#include "taut/scene/scene_world.h"
 
 namespace taut {
 
@@ -50,7 +51,8 @@ std::vector<double> node_stretch(const ClothModel& cloth, std::span<const Vec3> 
   return stretch;
 }
 
-std::vector<double> nearness(std::span<const Solid> solids, double time, std::span<const Vec3> x) {
+std::vector<double> nearness(std::span<const SolidEntry> solids, double time,
+                             std::span<const Vec3> x) {
   std::vector<double> contact(x.size(), 0.0);
   for (const Solid& solid : solids) {
     if (solid.shape == SolidShape::mesh) continue;
@@ -65,7 +67,7 @@ std::vector<double> nearness(std::span<const Solid> solids, double time, std::sp
 }  // namespace
 
 ResultFrames::ResultFrames(const std::filesystem::path& folder)
-    : results_(folder), scene_(scene_of(results_)), cloth_(scene_) {}
+    : results_(folder), scene_(scene_of(results_)), cloth_(make_world(scene_).world) {}
 
 int ResultFrames::last_frame() const {
   const int count = results_.frame_count();

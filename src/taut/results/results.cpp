@@ -140,7 +140,7 @@ void remove_unfinished_in(const fs::path& folder,
   for (const fs::path& file : left) fs::remove(file);
 }
 
-std::vector<std::uint64_t> sums_of(const std::vector<InputFile>& files) {
+std::vector<std::uint64_t> sums_of(std::span<const InputFile> files) {
   std::vector<std::uint64_t> sums;
   for (const InputFile& file : files) sums.push_back(file.sum);
   return sums;
@@ -164,7 +164,7 @@ fs::path ResultsFolder::contact_file(int frame) const {
   return folder_ / "frames" / fmt::format("contact_{:06}.npy", frame);
 }
 
-std::vector<std::string> ResultsFolder::start(const Simulation& simulation) const {
+std::vector<std::string> ResultsFolder::start(const SceneSimulation& simulation) const {
   refuse_foreign_folder(folder_);
   refuse_running();
   const std::string scene = scene_to_toml(simulation.scene());
@@ -187,7 +187,7 @@ std::vector<std::string> ResultsFolder::start(const Simulation& simulation) cons
   return replaced;
 }
 
-void ResultsFolder::change_length(const Simulation& simulation) const {
+void ResultsFolder::change_length(const SceneSimulation& simulation) const {
   write_file(scene_file(), scene_to_toml(simulation.scene()));
   write_mesh_solids(simulation.scene(), folder_ / "frames");
 }
@@ -248,20 +248,13 @@ void ResultsFolder::remove_frames_after(int frame) const {
   }
 }
 
-void ResultsFolder::write_checkpoint(const Simulation& simulation, int frame) const {
-  const SurfaceContact* surface_contact = simulation.surface_contact();
-  const Checkpoint checkpoint{scene_to_toml(simulation.scene()),
-                              simulation.steps_done(),
-                              frame,
-                              simulation.state(),
-                              simulation.contact().state(),
-                              simulation.stepper().solver().memory(),
-                              surface_contact ? surface_contact->state() : ClothContactState{},
-                              sums_of(simulation.input_files())};
+void ResultsFolder::write_checkpoint(const SceneSimulation& simulation, int frame) const {
+  const Checkpoint checkpoint{scene_to_toml(simulation.scene()), frame,
+                              sums_of(simulation.input_files()), simulation.save()};
   write_file(checkpoint_file(), [&](std::ostream& out) { write(out, checkpoint); });
 }
 
-CheckpointPlace ResultsFolder::read_checkpoint(Simulation& simulation) const {
+CheckpointPlace ResultsFolder::read_checkpoint(SceneSimulation& simulation) const {
   Checkpoint checkpoint =
       parse_checkpoint(read_file(checkpoint_file()), checkpoint_file().string());
   const std::string scene = scene_to_toml(simulation.scene());
@@ -270,22 +263,26 @@ CheckpointPlace ResultsFolder::read_checkpoint(Simulation& simulation) const {
         {checkpoint_file().string()},
         fmt::format("belongs to another scene than {}; run the scene anew with `taut run`",
                     scene_file().string()));
-  const std::vector<InputFile> files = simulation.input_files();
+  const std::span<const InputFile> files = simulation.input_files();
   for (std::size_t k = 0; k < files.size() && checkpoint.files.size() == files.size(); ++k)
     if (checkpoint.files[k] != files[k].sum)
       throw InputError({files[k].path.string()},
                        fmt::format("has changed since {} was written; bring the old file back, or "
                                    "run the scene anew with `taut run`",
                                    checkpoint_file().string()));
-  if (static_cast<Index>(checkpoint.state.x.size()) != simulation.cloth().nodes() ||
+  if (static_cast<Index>(checkpoint.snapshot.state.x.size()) != simulation.cloth().nodes() ||
       checkpoint.files.size() != files.size())
     throw InputError({checkpoint_file().string()},
                      fmt::format("has {} nodes and {} mesh files, the scene has {} and {}: run the "
                                  "scene anew with `taut run`",
-                                 checkpoint.state.x.size(), checkpoint.files.size(),
+                                 checkpoint.snapshot.state.x.size(), checkpoint.files.size(),
                                  simulation.cloth().nodes(), files.size()));
-  simulation.restore(std::move(checkpoint.state), std::move(checkpoint.contacts), checkpoint.steps,
-                     checkpoint.solver_memory, std::move(checkpoint.surface_contact));
+  try {
+    simulation.load(checkpoint.snapshot);
+  } catch (const InputError& error) {
+    throw InputError({checkpoint_file().string()},
+                     std::string(error.what()) + "; run the scene anew with `taut run`");
+  }
   return {checkpoint.frame, checkpoint.scene != scene};
 }
 
@@ -326,7 +323,7 @@ StatsWriter::StatsWriter(const fs::path& path, int keep_steps) : path_(path) {
 
 StatsWriter::~StatsWriter() { std::fclose(file_); }
 
-void StatsWriter::write(const StepRecord& r, int frame) {
+void StatsWriter::write(const StepReport& r, int frame) {
   const auto optional = [](auto value, auto nothing) {
     return value == nothing ? std::string() : std::to_string(value);
   };

@@ -30,7 +30,7 @@
 #include <string>
 #include <vector>
 
-#include "taut/sim/simulation.h"
+#include "taut/scene/scene_simulation.h"
 
 namespace taut {
 
@@ -54,9 +54,9 @@ class ResultsFolder {
   // Makes the folder for a new run: results of an earlier run in it are removed. Throws InputError
   // when the folder holds something that is not a result of Taut's, or when a run is writing it.
   // Returns what was there where that was another scene's: in sentences, for the user.
-  std::vector<std::string> start(const Simulation& simulation) const;
+  std::vector<std::string> start(const SceneSimulation& simulation) const;
   // Before the run goes on for another number of frames than it began with.
-  void change_length(const Simulation& simulation) const;
+  void change_length(const SceneSimulation& simulation) const;
   // What processes that were killed left of files they were writing.
   void remove_unfinished() const;
   // Throws InputError while another run writes this folder.
@@ -74,11 +74,11 @@ class ResultsFolder {
   bool has_gap() const;
   void remove_frames_after(int frame) const;
 
-  void write_checkpoint(const Simulation& simulation, int frame) const;
+  void write_checkpoint(const SceneSimulation& simulation, int frame) const;
   // Restores the simulation. Throws InputError when the checkpoint is missing, damaged or of
   // another scene, of which the number of frames alone may differ, or when a mesh or motion file
   // has changed since.
-  CheckpointPlace read_checkpoint(Simulation& simulation) const;
+  CheckpointPlace read_checkpoint(SceneSimulation& simulation) const;
 
  private:
   std::filesystem::path folder_;
@@ -93,7 +93,7 @@ class StatsWriter {
   ~StatsWriter();
   StatsWriter(const StatsWriter&) = delete;
   StatsWriter& operator=(const StatsWriter&) = delete;
-  void write(const StepRecord& record, int frame);
+  void write(const StepReport& record, int frame);
   static std::string header();
 
  private:

@@ -34,7 +34,7 @@ double peak_memory_MB() {
 }
 
 // Sums over the steps of this run, turned into means at the end.
-void add_step(RunSummary& summary, const StepRecord& r) {
+void add_step(RunSummary& summary, const StepReport& r) {
   ++summary.steps;
   summary.mean_step_ms += r.step_ms;
   summary.mean_iterations += r.iterations;
@@ -46,7 +46,7 @@ void add_step(RunSummary& summary, const StepRecord& r) {
   summary.fallbacks += r.fallbacks;
 }
 
-void note_stretch(RunSummary& summary, const StepRecord& r, const Simulation& simulation) {
+void note_stretch(RunSummary& summary, const StepReport& r, const SceneSimulation& simulation) {
   if (r.overshoot > 0.0) {
     AcceptedOvershoots& o = summary.overshoots;
     ++o.steps;
@@ -89,7 +89,7 @@ void warn(RunSummary& s, const TimeOptions& time) {
 }
 
 // What to do about a step that failed.
-std::string advice(const Status& status, const Simulation& simulation) {
+std::string advice(const Status& status, const SceneSimulation& simulation) {
   const SurfaceContact* contact = simulation.surface_contact();
   if (contact && !contact->contact().trouble().empty())
     return "leave the cloth there more room, let the pins and solids that hold it move slower or "
@@ -114,11 +114,11 @@ void finish_means(RunSummary& summary) {
     *mean /= summary.steps;
 }
 
-const UntangleReport* untangling(const Simulation& simulation) {
+const UntangleReport* untangling(const SceneSimulation& simulation) {
   return simulation.surface_contact() ? simulation.surface_contact()->untangled() : nullptr;
 }
 
-void write_summary(const RunSummary& s, const Simulation& simulation,
+void write_summary(const RunSummary& s, const SceneSimulation& simulation,
                    const ResultsFolder& results) {
   const Scene& scene = simulation.scene();
   nlohmann::ordered_json json{{"title", scene.title},
@@ -167,7 +167,7 @@ void write_summary(const RunSummary& s, const Simulation& simulation,
 
 }  // namespace
 
-RunSummary run(Simulation& simulation, const ResultsFolder& results, RunObserver& observer,
+RunSummary run(SceneSimulation& simulation, const ResultsFolder& results, RunObserver& observer,
                const std::atomic<bool>& interrupt, int first_frame) {
   Timer timer;
   const TimeOptions& time = simulation.scene().time;
@@ -189,7 +189,7 @@ RunSummary run(Simulation& simulation, const ResultsFolder& results, RunObserver
       summary.end = RunEnd::interrupted;
       break;
     }
-    StepRecord record;
+    StepReport record;
     const Status status = simulation.step(record);
     if (!status.ok()) {
       summary.end = RunEnd::failed;

@@ -12,7 +12,7 @@ namespace taut {
 class RunObserver {
  public:
   virtual ~RunObserver() = default;
-  virtual void on_step(const StepRecord&, int /*steps_total*/) {}
+  virtual void on_step(const StepReport&, int /*steps_total*/) {}
   virtual void on_frame(int /*frame*/, int /*frames_total*/) {}
   // Something the user should know but that does not stop the run: a fall-back, say.
   virtual void on_message(const std::string&) {}
@@ -55,15 +55,16 @@ struct RunSummary {
 // Runs all frames of the simulation's scene from where it stands (frame 0, or `first_frame` after
 // read_checkpoint) until done, failed, or `interrupt` becomes true. Whatever happens, the folder is
 // valid up to the last written frame, and the summary and the contact sheet are written.
-RunSummary run(Simulation& simulation, const ResultsFolder& results, RunObserver& observer,
+RunSummary run(SceneSimulation& simulation, const ResultsFolder& results, RunObserver& observer,
                const std::atomic<bool>& interrupt, int first_frame = 0);
 
 // After a failed step: writes the state before it into `last_good/` of the folder, all surfaces as
 // surface.obj, and where cloth could not be kept apart a picture of the place, place.png. Returns
 // the folder.
-std::filesystem::path save_last_good(const Simulation& simulation, const ResultsFolder& results);
+std::filesystem::path save_last_good(const SceneSimulation& simulation,
+                                     const ResultsFolder& results);
 
 // Draws some frames of a results folder side by side. Throws InputError when there are none.
-void draw_contact_sheet(const Simulation& simulation, const ResultsFolder& results);
+void draw_contact_sheet(const SceneSimulation& simulation, const ResultsFolder& results);
 
 }  // namespace taut

@@ -35,7 +35,7 @@ SolidMesh mesh_of(const MeshSolid& solid, double time) {
 SolidShapes::SolidShapes(const Scene& scene, int segments) : scene_(scene), segments_(segments) {
   for (std::size_t k = 0; k < scene.solids.size(); ++k)
     if (scene.solids[k].shape == SolidShape::mesh)
-      meshes_.emplace(k, MeshSolid(scene.solids[k], scene.folder));
+      meshes_.emplace(k, MeshSolid(scene.solids[k], read_surface(scene.solids[k], scene.folder)));
 }
 
 std::string SolidShapes::name(std::size_t k) const {
@@ -43,7 +43,7 @@ std::string SolidShapes::name(std::size_t k) const {
 }
 
 bool SolidShapes::moves(std::size_t k) const {
-  const Solid& s = solid(k);
+  const SolidEntry& s = solid(k);
   if (!s.motion.empty()) return true;
   if (s.key_frames.empty()) return !s.velocity.isZero(0) || !s.angular_velocity.isZero(0);
   return std::any_of(s.key_frames.begin(), s.key_frames.end(),
@@ -52,7 +52,7 @@ bool SolidShapes::moves(std::size_t k) const {
 
 SolidMesh SolidShapes::at(std::size_t k, double time) const {
   constexpr double plane_radius = 3.0;
-  const Solid& s = solid(k);
+  const SolidEntry& s = solid(k);
   const Isometry pose = isometry(s.pose(time));
   switch (s.shape) {
     case SolidShape::sphere:

@@ -4,7 +4,7 @@
 #include <map>
 
 #include "taut/picture/solid_mesh.h"
-#include "taut/scene/scene.h"
+#include "taut/scene/scene_world.h"
 #include "taut/sim/mesh_solid.h"
 
 namespace taut {
@@ -17,7 +17,7 @@ class SolidShapes {
   explicit SolidShapes(const Scene& scene, int segments = 96);
 
   std::size_t size() const { return scene_.solids.size(); }
-  const Solid& solid(std::size_t k) const { return scene_.solids[k]; }
+  const SolidEntry& solid(std::size_t k) const { return scene_.solids[k]; }
   // Its name in the scene, or solid_K.
   std::string name(std::size_t k) const;
   // Is the shape ever another than at time 0?

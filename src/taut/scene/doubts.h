@@ -24,9 +24,6 @@ struct Doubts {
 // `shape`: start_shape (cloth_shape.h). Pins that pull faster than cloth can follow, hold one node
 // in two ways, move nothing, or hold a node inside a solid.
 void doubt_pins(Doubts& d, const Cloth& cloth, const TriangleMesh& shape, const ClothEstimate& e);
-// How deep in the solid x is at the start, m; not positive outside. Meshes are found as
-// intersections.
-double depth_at_start(const Solid& solid, const Vec3& x);
 // One entry a node.
 std::vector<bool> pinned_at_start(const Cloth& cloth, std::size_t nodes);
 

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "taut/scene/cloth_model.h"
 #include "taut/scene/doubts.h"
+#include "taut/scene/scene_world.h"
 
 namespace taut {
 
@@ -96,7 +96,7 @@ void doubt_pins_inside(Doubts& d, const Cloth& cloth, const TriangleMesh& shape)
     std::size_t inside = 0, first = 0;
     double deepest = 0.0;
     for (std::size_t i = pinned.size(); i-- > 0;) {
-      const double depth = pinned[i] ? depth_at_start(solid, shape.positions[i]) : 0.0;
+      const double depth = pinned[i] ? depth_inside(solid, shape.positions[i], 0.0) : 0.0;
       if (depth <= d.scene.contact.touch_tolerance) continue;
       ++inside, first = i;
       deepest = std::max(deepest, depth);
@@ -114,11 +114,6 @@ void doubt_pins_inside(Doubts& d, const Cloth& cloth, const TriangleMesh& shape)
 }
 
 }  // namespace
-
-double depth_at_start(const Solid& solid, const Vec3& x) {
-  if (solid.shape == SolidShape::mesh) return 0.0;
-  return solid.thickness - closest_surface(solid, solid.pose(0.0).to_local(x)).distance;
-}
 
 std::vector<bool> pinned_at_start(const Cloth& cloth, std::size_t nodes) {
   std::vector<bool> pinned(nodes, false);

@@ -4,6 +4,7 @@
 // down (docs/scene-reference.md is generated from there).
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "taut/base/types.h"
 #include "taut/contact/contact_options.h"
 #include "taut/contact/solid.h"
+#include "taut/element/external.h"
 #include "taut/element/spring_material.h"
 #include "taut/mesh/grid.h"
 #include "taut/mesh/tube.h"
@@ -39,12 +41,6 @@ struct NodeSelection {
   bool operator==(const NodeSelection&) const = default;
 };
 
-// Where a scene file says something, for messages about what is found out later; no part of what
-// the scene is.
-struct WrittenAt : SourcePlace {
-  bool operator==(const WrittenAt&) const { return true; }
-};
-
 // A pin holds nodes still, or carries them along a path: the displacement of the path since time 0
 // is added to where the nodes started, and they turn about `pivot` with the key frames' rotation.
 // Between key frames as Solid. After `release` (s) the nodes are free.
@@ -53,7 +49,6 @@ struct Pin {
   std::vector<KeyFrame> key_frames;
   Vec3 pivot = Vec3::Zero();
   double release = -1.0;  // negative: never
-  WrittenAt nodes_at;
   bool operator==(const Pin&) const = default;
 };
 
@@ -88,12 +83,22 @@ struct Cloth {
   bool operator==(const Cloth&) const = default;
 };
 
-struct Wind {
-  Vec3 velocity = Vec3::Zero();  // m/s
-  // share of velocity: wind(t) = velocity (1 + gust sin(2π gust_frequency t))
-  double gust = 0.0;
-  double gust_frequency = 1.0;  // Hz
-  bool operator==(const Wind&) const = default;
+// A solid of a scene file, with the files of one that is a mesh.
+struct SolidEntry : Solid {
+  // OBJ, PLY or USD file, in the last which prim; its lengths' scale and upward axis; and where it
+  // deforms, a file of positions (io/motion_file.h), samples a second.
+  std::filesystem::path mesh, motion;
+  std::string prim;
+  double scale = 1.0;
+  bool y_up = false;
+  double motion_rate = 24.0;
+  bool operator==(const SolidEntry&) const = default;
+};
+
+// Where a scene file says something, by path ("cloth.0.pin.1.nodes"), for messages about what is
+// found out later; no part of what the scene is.
+struct WrittenAt : std::map<std::string, SourcePlace> {
+  bool operator==(const WrittenAt&) const { return true; }
 };
 
 struct Scene {
@@ -103,9 +108,10 @@ struct Scene {
   SolverOptions solver{.name = "auto"};
   ContactOptions contact;
   Vec3 gravity = Vec3(0, 0, -9.81);  // m/s²
-  Wind wind;
+  WindOptions wind;
   std::vector<Cloth> cloths;
-  std::vector<Solid> solids;
+  std::vector<SolidEntry> solids;
+  WrittenAt places;
   bool operator==(const Scene&) const = default;
 };
 

@@ -138,7 +138,7 @@ void doubt_start(Doubts& d, const Cloth& cloth, const TriangleMesh& shape, const
   std::size_t inside = 0;
   double deepest = 0.0;
   for (std::size_t i = 0; i < pinned.size(); ++i) {
-    const double depth = pinned[i] ? 0.0 : depth_at_start(solid, shape.positions[i]);
+    const double depth = pinned[i] ? 0.0 : depth_inside(solid, shape.positions[i], 0.0);
     if (depth > d.scene.contact.touch_tolerance) ++inside;
     deepest = std::max(deepest, depth);
   }

@@ -6,6 +6,7 @@
 #include "taut/base/file.h"
 #include "taut/scene/scene_file.h"
 #include "taut/scene/scene_settings.h"
+#include "taut/scene/schema.h"
 #include "taut/scene/schema_catalogue.h"
 #include "taut/scene/toml_reader.h"
 
@@ -45,6 +46,7 @@ Scene read(const toml::table& document, const fs::path& path) {
   describe(reader, scene);
   reader.finish();
   complaints.throw_if_any();
+  static_cast<std::map<std::string, SourcePlace>&>(scene.places) = reader.places();
   return scene;
 }
 

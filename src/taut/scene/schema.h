@@ -1,105 +1,13 @@
 #pragma once
-// The scene format, written down once: describe() names every key of a scene file with its meaning,
-// unit, range and the field it fills. Visitors walk it: the TOML reader (scene_reader.cpp), the
-// TOML writer (scene_writer.cpp) and the reference page (scene_reference.cpp). A new key is one
-// line in a describe function, and nothing else.
-//
-// A visitor is handed references: the reader assigns to them, the others only read. Before the walk
-// the fields hold the defaults (reader, reference) or the scene (writer).
+// The scene format, made of the declarations of sim/describe.h and of what only a file has: shapes
+// by their parameters, files, names of nodes. A new key is one line in a describe function: reader,
+// writer and reference page follow.
 
-#include <Eigen/Geometry>
-#include <filesystem>
-#include <functional>
-#include <limits>
-#include <span>
-#include <string>
-#include <vector>
-
-#include "taut/base/error.h"
-#include "taut/base/types.h"
+#include "taut/sim/schema.h"
 
 namespace taut {
 
 struct Scene;
-
-struct KeyInfo {
-  const char* doc = "";
-  const char* unit = "";  // "m/s"; empty for plain numbers
-  // inclusive, unless above_min; of each entry of an array
-  double min = -std::numeric_limits<double>::infinity();
-  double max = std::numeric_limits<double>::infinity();  // inclusive
-  bool above_min = false;                                // min itself is too small
-  // the reader insists on the key, where it applies
-  bool required = false;
-  // the field's value stands for "not given": the writer leaves the key out
-  bool unset = false;
-  // entries of an integer array, 0: any number
-  std::size_t count = 0;
-  // false: the key makes no sense beside the others, see only_for
-  bool applies = true;
-  // "a sphere or cylinder": what has this key
-  const char* only_for = "";
-  const char* hint = "";  // added to messages about a wrong value
-};
-
-class SchemaVisitor {
- public:
-  virtual ~SchemaVisitor() = default;
-  virtual void number(const char* key, double& value, const KeyInfo& info) = 0;
-  virtual void integer(const char* key, int& value, const KeyInfo& info) = 0;
-  virtual void flag(const char* key, bool& value, const KeyInfo& info) = 0;
-  virtual void text(const char* key, std::string& value, const KeyInfo& info) = 0;
-  // An existing file; the reader makes a relative path absolute, starting from the scene file's
-  // folder.
-  virtual void file(const char* key, std::filesystem::path& value, const KeyInfo& info) = 0;
-  virtual void vector(const char* key, Vec3& value, const KeyInfo& info) = 0;
-  // { axis = [x, y, z], degrees = angle } or { quaternion = [w, x, y, z] }.
-  virtual void rotation(const char* key, Eigen::Quaterniond& value, const KeyInfo& info) = 0;
-  virtual void integers(const char* key, std::vector<Index>& value, const KeyInfo& info) = 0;
-  // One of `names`: value is its index.
-  virtual void choose(const char* key, int& value, std::span<const char* const> names,
-                      const KeyInfo& info) = 0;
-  // Any number of `names`, none of them twice.
-  virtual void choose_some(const char* key, std::vector<std::string>& value,
-                           std::span<const char* const> names, const KeyInfo& info) = 0;
-  // [key], described by `inside`.
-  virtual void table(const char* key, const KeyInfo& info, const std::function<void()>& inside) = 0;
-
-  // enum with enumerators 0, 1, 2, ... in the order of `names`.
-  template <class Enum>
-  void choice(const char* key, Enum& value, std::span<const char* const> names,
-              const KeyInfo& info) {
-    int index = static_cast<int>(value);
-    choose(key, index, names, info);
-    value = static_cast<Enum>(index);
-  }
-  // [[key]], one table for each item, described by inside(item).
-  template <class T, class Inside>
-  void list(const char* key, std::vector<T>& items, const KeyInfo& info, Inside&& inside) {
-    tables(key,
-           {items.size(), [&](std::size_t n) { items.resize(n); },
-            [&](std::size_t i) { inside(items[i]); }},
-           info);
-  }
-
-  // Is the key in the file? Where there is no file: `now`.
-  virtual bool given(const char* key, bool now) = 0;
-  // Where the file has the key; nowhere where there is no file, or not this key.
-  virtual SourcePlace place_of(const char*) { return {}; }
-  // The file must hold exactly one of these keys.
-  virtual void exactly_one(std::span<const char* const> keys) = 0;
-  // A condition that a range cannot say. When it fails the reader reports `message` at `key`
-  // (skipped when this table has errors already).
-  virtual void check(bool holds, const char* key, const std::string& message) = 0;
-
- protected:
-  struct TableList {
-    std::size_t size;
-    std::function<void(std::size_t)> resize;
-    std::function<void(std::size_t)> visit;
-  };
-  virtual void tables(const char* key, const TableList& items, const KeyInfo& info) = 0;
-};
 
 void describe(SchemaVisitor& v, Scene& scene);
 

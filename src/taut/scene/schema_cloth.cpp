@@ -8,8 +8,6 @@ namespace taut {
 
 namespace {
 
-constexpr std::array compression_names{"none", "linear"};
-constexpr std::array bend_model_names{"linear", "choi_ko"};
 constexpr std::array up_names{"z", "y"};
 constexpr std::array corner_names{"u0v0", "u1v0", "u0v1", "u1v1"};
 constexpr std::array edge_names{"u0", "u1", "v0", "v1"};
@@ -114,39 +112,6 @@ void describe_shape(SchemaVisitor& v, Cloth& cloth) {
   describe_pose(v, cloth.placement, file || tube, placed_only);
 }
 
-void describe_material(SchemaVisitor& v, SpringMaterial& m) {
-  v.number("k_stretch", m.k_stretch,
-           {.doc = "stiffness of a stretch spring", .unit = "N/m", .min = 0, .max = 1e12});
-  v.number("k_shear", m.k_shear,
-           {.doc = "stiffness of a shear spring", .unit = "N/m", .min = 0, .max = 1e12});
-  v.number("k_bend", m.k_bend,
-           {.doc = "stiffness of a bend spring; a flexural rigidity in N·m² with `bend_model = "
-                   "\"choi_ko\"`",
-            .unit = "N/m",
-            .min = 0,
-            .max = 1e12});
-  constexpr const char* damping = "damping along the spring";
-  v.number("k_damp_stretch", m.k_damp_stretch,
-           {.doc = damping, .unit = "N·s/m", .min = 0, .max = 1e9});
-  v.number("k_damp_shear", m.k_damp_shear, {.doc = damping, .unit = "N·s/m", .min = 0, .max = 1e9});
-  v.number("k_damp_bend", m.k_damp_bend, {.doc = damping, .unit = "N·s/m", .min = 0, .max = 1e9});
-  v.choice("compression", m.compression, compression_names,
-           {.doc = "a compressed stretch or shear spring gives way (`none`: the cloth buckles) or "
-                   "pushes back (`linear`)"});
-  v.choice(
-      "bend_model", m.bend_model, bend_model_names,
-      {.doc =
-           "`linear`: a spring both ways; `choi_ko`: the post-buckling force of Choi & Ko 2002"});
-  const bool choi_ko = m.bend_model == BendModel::choi_ko;
-  v.number("bend_cap", m.bend_cap,
-           {.doc = "slope that caps the buckling force near the rest length; 0: k_stretch",
-            .unit = "N/m",
-            .min = 0,
-            .max = 1e12,
-            .applies = choi_ko,
-            .only_for = "bend_model choi_ko"});
-}
-
 void check_nodes(SchemaVisitor& v, const Cloth& cloth, const std::vector<Index>& nodes) {
   const Index count = cloth.grid.node_count();
   for (const Index node : nodes)
@@ -160,7 +125,6 @@ void describe_pin(SchemaVisitor& v, const Cloth& cloth, Pin& pin) {
   v.exactly_one(std::array{"nodes", "corners", "edges"});
   v.integers("nodes", pin.where.nodes,
              {.doc = "by index, from 0", .min = 0, .unset = pin.where.nodes.empty()});
-  pin.nodes_at = {v.place_of("nodes")};
   check_nodes(v, cloth, pin.where.nodes);
   constexpr const char* grid_only = "a cloth with grid (on a mesh or a tube pin nodes by index)";
   constexpr const char* edges_only = "a cloth with grid or tube (on a mesh pin nodes by index)";
@@ -185,55 +149,16 @@ void describe_pin(SchemaVisitor& v, const Cloth& cloth, Pin& pin) {
   v.check(!v.given("nodes", false) || !pin.where.nodes.empty(), "nodes", none);
   v.check(!v.given("corners", false) || !pin.where.corners.empty(), "corners", none);
   v.check(!v.given("edges", false) || !pin.where.edges.empty(), "edges", none);
-  v.vector("pivot", pin.pivot, {.doc = "the point about which the key frames turn", .unit = "m"});
-  v.number("release", pin.release,
-           {.doc = "when the nodes are let go; never when not given",
-            .unit = "s",
-            .min = 0,
-            .max = 1e6,
-            .unset = pin.release < 0});
-  describe_key_frames(
-      v, pin.key_frames,
-      "A path: the nodes are carried by its displacement since time 0, linear in between.");
+  describe_pin_path(v, pin.pivot, pin.release, pin.key_frames);
 }
 
 }  // namespace
 
 void describe_cloth(SchemaVisitor& v, Cloth& cloth) {
-  v.text("name", cloth.name,
-         {.doc = "for reports and file names, so without `/` and `\\`; `cloth_0`, `cloth_1`, ... "
-                 "when not given",
-          .unset = cloth.name.empty()});
-  v.check(
-      cloth.name.find_first_of("/\\") == std::string::npos, "name",
-      fmt::format("'{}' becomes part of file names, where / and \\ part folders: leave them out",
-                  cloth.name));
+  describe_cloth_name(v, cloth.name);
   describe_shape(v, cloth);
-  v.exactly_one(std::array{"node_mass", "density"});
-  v.number("node_mass", cloth.node_mass,
-           {.doc = "mass of every node",
-            .unit = "kg",
-            .min = 0,
-            .max = 1e6,
-            .above_min = true,
-            .unset = cloth.node_mass == 0});
-  v.number("density", cloth.density,
-           {.doc = "mass of an area, spread over the triangles' corners",
-            .unit = "kg/m²",
-            .min = 0,
-            .max = 1e6,
-            .above_min = true,
-            .unset = cloth.density == 0});
-  describe_material(v, cloth.material);
-  v.number(
-      "drag", cloth.drag,
-      {.doc = "force -drag (velocity - wind) on every node", .unit = "kg/s", .min = 0, .max = 1e6});
-  v.number("wind_pressure", cloth.wind_pressure,
-           {.doc = "force c A (n·(wind - velocity)) n on each triangle of area A and normal n",
-            .unit = "kg/(m²·s)",
-            .min = 0,
-            .max = 1e6});
-  v.vector("velocity", cloth.velocity, {.doc = "of every node at the start", .unit = "m/s"});
+  describe_cloth_values(v, {cloth.node_mass, cloth.density, cloth.material, cloth.drag,
+                            cloth.wind_pressure, cloth.velocity});
   v.number("jitter", cloth.jitter,
            {.doc = "each coordinate at the start is moved at random by up to this",
             .unit = "m",

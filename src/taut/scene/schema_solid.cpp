@@ -6,47 +6,10 @@ namespace taut {
 
 namespace {
 constexpr std::array up_names{"z", "y"};
-constexpr std::array shape_names{"sphere", "plane", "cylinder", "box", "mesh"};
 }  // namespace
 
-void describe_solid(SchemaVisitor& v, Solid& solid) {
-  v.text("name", solid.name,
-         {.doc = "for reports; `solid_0`, `solid_1`, ... when not given",
-          .unset = solid.name.empty()});
-  v.choice("shape", solid.shape, shape_names,
-           {.doc = "sphere: centre at the origin; plane: solid below, normal +z; cylinder: axis z, "
-                   "flat caps; box: edges along the axes; all "
-                   "centred, then moved by `translation` and `rotation`",
-            .required = true});
-  const bool sphere = solid.shape == SolidShape::sphere;
-  const bool cylinder = solid.shape == SolidShape::cylinder, box = solid.shape == SolidShape::box;
-  v.number("radius", solid.radius,
-           {.doc = "radius",
-            .unit = "m",
-            .min = 0,
-            .max = 1e6,
-            .above_min = true,
-            .required = true,
-            .applies = sphere || cylinder,
-            .only_for = "a sphere or a cylinder"});
-  v.number("height", solid.height,
-           {.doc = "from cap to cap",
-            .unit = "m",
-            .min = 0,
-            .max = 1e6,
-            .above_min = true,
-            .required = true,
-            .applies = cylinder,
-            .only_for = "a cylinder"});
-  v.vector("size", solid.size,
-           {.doc = "edge lengths along x, y, z",
-            .unit = "m",
-            .min = 0,
-            .max = 1e6,
-            .above_min = true,
-            .required = true,
-            .applies = box,
-            .only_for = "a box"});
+void describe_solid(SchemaVisitor& v, SolidEntry& solid) {
+  describe_solid_shape(v, solid);
   const bool mesh = solid.shape == SolidShape::mesh;
   constexpr const char* mesh_only = "a mesh";
   v.file("mesh", solid.mesh,
@@ -86,28 +49,7 @@ void describe_solid(SchemaVisitor& v, Solid& solid) {
             .max = 1e6,
             .applies = mesh,
             .only_for = mesh_only});
-  v.number("friction", solid.friction,
-           {.doc = "Coulomb's μ, at rest and sliding", .min = 0, .max = 100});
-  v.number(
-      "thickness", solid.thickness,
-      {.doc = "cloth is kept this far from the surface; a little hides that triangles cut corners",
-       .unit = "m",
-       .min = 0,
-       .max = 1});
-  const bool constant = !v.given("key_frames", !solid.key_frames.empty());
-  constexpr const char* without_key_frames = "a solid without key_frames";
-  describe_pose(v, solid.initial, constant, without_key_frames);
-  v.vector("velocity", solid.velocity,
-           {.doc = "constant", .unit = "m/s", .applies = constant, .only_for = without_key_frames});
-  v.vector("angular_velocity", solid.angular_velocity,
-           {.doc = "constant, about the solid's own origin, world axes",
-            .unit = "rad/s",
-            .applies = constant,
-            .only_for = without_key_frames});
-  describe_key_frames(v, solid.key_frames,
-                      "Where the solid is at some times, instead of `translation`, `rotation` and "
-                      "velocities: linear in between, held before "
-                      "the first and after the last.");
+  describe_solid_motion(v, solid);
 }
 
 }  // namespace taut

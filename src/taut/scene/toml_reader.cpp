@@ -15,37 +15,11 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::string with_unit(const std::string& text, const KeyInfo& info) {
-  return *info.unit ? text + " " + info.unit : text;
-}
-
 std::string hint(const KeyInfo& info) {
   return *info.hint ? std::string("; ") + info.hint : std::string();
 }
 
-std::vector<std::string> strings(std::span<const char* const> names) {
-  return {names.begin(), names.end()};
-}
-
-std::string suggestion(const std::string& word, const std::vector<std::string>& known) {
-  const std::string near = nearest_name(word, known);
-  return near.empty() ? std::string() : "; did you mean '" + near + "'?";
-}
-
 }  // namespace
-
-std::string range_text(const KeyInfo& info) {
-  const bool low = std::isfinite(info.min), high = std::isfinite(info.max);
-  if (!low && !high) return {};
-  std::string text;
-  if (low && high && !info.above_min) {
-    text = fmt::format("from {:g} to {:g}", info.min, info.max);
-  } else {
-    if (low) text = fmt::format("{} {:g}", info.above_min ? "above" : "at least", info.min);
-    if (high) text += fmt::format("{}at most {:g}", low ? ", " : "", info.max);
-  }
-  return with_unit(text, info);
-}
 
 TomlReader::TomlReader(const toml::table& document, fs::path folder, Home home,
                        Complaints& complaints)
@@ -72,6 +46,7 @@ const toml::node* TomlReader::take(const char* key, const KeyInfo& info) {
   level().known.push_back(key);
   const auto entry = level().table->find(std::string_view(key));
   const bool present = entry != level().table->end();
+  if (present) places_[level().path + key] = source_place(entry->second.source());
   if (present && info.applies) return &entry->second;
   // Whether a key applies depends on other keys: when one of those is wrong already, this complaint
   // would only mislead.
@@ -89,11 +64,9 @@ const toml::node* TomlReader::take(const char* key, const KeyInfo& info) {
 
 bool TomlReader::in_range(const char* key, const toml::node& node, double value,
                           const KeyInfo& info) {
-  if (value <= info.max && (info.above_min ? value > info.min : value >= info.min)) return true;
-  complain(node, key,
-           fmt::format(" = {} is out of range: expected {}{}",
-                       with_unit(fmt::format("{}", value), info), range_text(info), hint(info)));
-  return false;
+  const std::string problem = problem_of(value, info);
+  if (!problem.empty()) complain(node, key, problem);
+  return problem.empty();
 }
 
 bool TomlReader::to_number(const char* key, const toml::node& node, double& value,
@@ -103,10 +76,6 @@ bool TomlReader::to_number(const char* key, const toml::node& node, double& valu
     return false;
   }
   const double read = *node.value<double>();
-  if (!std::isfinite(read)) {
-    complain(node, key, fmt::format(" = {} is not a finite number: give a number that is", read));
-    return false;
-  }
   if (!in_range(key, node, read, info)) return false;
   value = read;
   return true;
@@ -213,16 +182,13 @@ void TomlReader::integers(const char* key, std::vector<Index>& value, const KeyI
 int TomlReader::index_of(const char* key, const toml::node& node,
                          std::span<const char* const> names) {
   const auto word = node.value_exact<std::string>();
-  const std::string choices = fmt::format("one of \"{}\"", fmt::join(names, "\", \""));
   if (!word) {
-    wrong_type(node, key, choices, {});
+    wrong_type(node, key, fmt::format("one of \"{}\"", fmt::join(names, "\", \"")), {});
     return -1;
   }
   const auto place = std::find(names.begin(), names.end(), *word);
   if (place != names.end()) return static_cast<int>(place - names.begin());
-  complain(node, key,
-           fmt::format(": \"{}\" is not known: expected {}{}", *word, choices,
-                       suggestion(*word, strings(names))));
+  complain(node, key, unknown_name(*word, names));
   return -1;
 }
 

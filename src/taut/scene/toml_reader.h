@@ -5,10 +5,11 @@
 #include <toml++/toml.h>
 
 #include <filesystem>
+#include <map>
 #include <vector>
 
 #include "taut/scene/complaints.h"
-#include "taut/scene/schema.h"
+#include "taut/sim/schema.h"
 
 namespace taut {
 
@@ -20,6 +21,8 @@ class TomlReader final : public SchemaVisitor {
              Complaints& complaints);
   // After the walk: complains about the top-level keys that were not described.
   void finish() { complain_of_unknown_keys(); }
+  // Where each key that was read stands, by its path.
+  const std::map<std::string, SourcePlace>& places() const { return places_; }
 
   void number(const char* key, double& value, const KeyInfo& info) override;
   void integer(const char* key, int& value, const KeyInfo& info) override;
@@ -35,7 +38,6 @@ class TomlReader final : public SchemaVisitor {
                    std::span<const char* const> names, const KeyInfo& info) override;
   void table(const char* key, const KeyInfo& info, const std::function<void()>& inside) override;
   bool given(const char* key, bool now) override;
-  SourcePlace place_of(const char* key) override;
   void exactly_one(std::span<const char* const> keys) override;
   void check(bool holds, const char* key, const std::string& message) override;
 
@@ -66,12 +68,10 @@ class TomlReader final : public SchemaVisitor {
   void complain_of_unknown_keys();
 
   std::vector<Level> levels_;
+  std::map<std::string, SourcePlace> places_;
   std::filesystem::path folder_;
   Home home_;
   Complaints& complaints_;
 };
-
-// "from 1e-7 to 0.1 s", "above 0 kg": the allowed values; "" when all are.
-std::string range_text(const KeyInfo& info);
 
 }  // namespace taut

@@ -37,6 +37,8 @@ void TomlReader::tables(const char* key, const TableList& items, const KeyInfo& 
   if (!array)
     return wrong_type(
         *node, key, fmt::format("a list of tables: write [[{}]], with double brackets", key), info);
+  if (array->empty() && info.required)
+    return complain(*node, key, fmt::format(" is missing; expected here: {}", info.doc));
   items.resize(array->size());
   for (std::size_t i = 0; i < array->size(); ++i) {
     const toml::node& entry = *array->get(i);
@@ -64,11 +66,6 @@ void TomlReader::complain_of_unknown_keys() {
 }
 
 bool TomlReader::given(const char* key, bool) { return level().table->contains(key); }
-
-SourcePlace TomlReader::place_of(const char* key) {
-  const toml::node* node = level().table->get(key);
-  return node ? source_place(node->source()) : SourcePlace{};
-}
 
 void TomlReader::exactly_one(std::span<const char* const> keys) {
   std::vector<std::string> present;

@@ -3,36 +3,42 @@
 // deforming with a sequence of positions.
 //
 //   x_world(t) = pose(t) * shape(t)
-//   shape(t)   the mesh's vertices, scaled and turned to Taut's z; or of a motion with samples s_0,
-//              s_1, ... at `rate` a second: linear in between, s_0 before time 0, the last one held
+//   shape(t)   the mesh's vertices; or of samples s_0, s_1, ... at `rate` a second: linear in
+//              between, s_0 before time 0, the last one held; or where the program puts them
 
 #include "taut/contact/solid.h"
-#include "taut/mesh/triangle_mesh.h"
+#include "taut/sim/world.h"
 
 namespace taut {
 
 class MeshSolid {
  public:
-  // Reads the files. Throws InputError as read_mesh and read_motion, and for a triangle that names
-  // a vertex twice.
-  MeshSolid(const Solid& solid, const std::filesystem::path& folder);
+  MeshSolid(const Solid& solid, SolidSurface surface);
 
   const Solid& solid() const { return solid_; }
-  const std::vector<Triangle>& triangles() const { return mesh_.triangles; }
-  Index vertices() const { return static_cast<Index>(mesh_.positions.size()); }
-  // Of what the files hold (base/checksum.h).
-  std::uint64_t mesh_sum() const { return mesh_sum_; }
-  std::uint64_t motion_sum() const { return motion_sum_; }
+  const std::vector<Triangle>& triangles() const { return surface_.mesh.triangles; }
+  Index vertices() const { return static_cast<Index>(surface_.mesh.positions.size()); }
   // m, at this time (s), one a vertex.
   void positions(double time, std::span<Vec3> x) const;
+
+  // Another motion of the same solid: key frames, pose and velocities of `solid`.
+  void set_motion(const Solid& solid) { solid_ = solid; }
+  // Its shape, in its own coordinates, goes from what it is at t0 to this at t1 (s), then stays.
+  void deform(std::vector<Vec3> shape, double t0, double t1);
+  // What deform has said, of the shape at t0 and at t1; empty: nothing.
+  struct Deformation {
+    std::vector<Vec3> from, to;
+    double t0 = 0.0, t1 = 0.0;
+  };
+  const Deformation& deformation() const { return deformation_; }
+  void set_deformation(Deformation deformation) { deformation_ = std::move(deformation); }
 
  private:
   Vec3 local(std::size_t vertex, double time) const;
 
   Solid solid_;
-  TriangleMesh mesh_;
-  std::vector<std::vector<Vec3>> samples_;
-  std::uint64_t mesh_sum_ = 0, motion_sum_ = 0;
+  SolidSurface surface_;
+  Deformation deformation_;
 };
 
 }  // namespace taut

@@ -8,8 +8,9 @@
 #include "taut/base/parallel.h"
 #include "taut/base/timer.h"
 #include "taut/element/overshoot.h"
-#include "taut/linalg/sparse_cholesky.h"
+#include "taut/sim/describe.h"
 #include "taut/sim/solid_variants.h"
+#include "taut/sim/validator.h"
 
 namespace taut {
 
@@ -17,30 +18,73 @@ namespace {
 
 SolverOptions fallback_options(const SolverOptions& options) {
   SolverOptions direct = options;
-  direct.name = make_cholesky("cholmod") ? "cholmod" : "eigen_ldlt";
+  direct.name = "block_cholesky";
   return direct;
 }
 
-SolidContact make_solid_contact(const Scene& scene, const ClothModel& cloth) {
-  SolidVariants variants = solid_variants(scene, cloth);
-  return SolidContact(std::move(variants.solids), cloth.nodes(), scene.contact,
+World valid(World world) {
+  world.validate();
+  return world;
+}
+
+SimulationOptions valid(SimulationOptions options) {
+  Validator v;
+  SimulationOptions copy = options;
+  v.inside("", [&] {
+    v.table("solver", {}, [&] { describe_solver(v, copy.solver); });
+    describe_integration(v, copy.integrator, copy.newton, copy.overshoot_limit, copy.max_halvings);
+  });
+  v.finish();
+  return options;
+}
+
+SolidContact make_solid_contact(const World& world, const ClothModel& cloth,
+                                std::vector<int>& variant_of) {
+  SolidVariants variants = solid_variants(world, cloth);
+  variant_of = std::move(variants.of);
+  return SolidContact(std::move(variants.solids), cloth.nodes(), world.contact,
                       std::move(variants.meets));
 }
 
 }  // namespace
 
-Simulation::Simulation(Scene scene)
-    : scene_(std::move(scene)),
-      cloth_(scene_),
-      contact_(make_solid_contact(scene_, cloth_)),
-      surface_contact_(SurfaceContact::wanted(scene_)
-                           ? std::make_unique<SurfaceContact>(scene_, cloth_)
+Simulation::Simulation(World world, SimulationOptions options)
+    : world_(valid(std::move(world))),
+      options_(valid(std::move(options))),
+      cloth_(world_),
+      contact_(make_solid_contact(world_, cloth_, variant_of_)),
+      surface_contact_(SurfaceContact::wanted(world_)
+                           ? std::make_unique<SurfaceContact>(world_, cloth_)
                            : nullptr),
-      stepper_(cloth_.nodes(), cloth_.force_models(), cloth_.external(), scene_.time.integrator,
-               scene_.solver, scene_.time.newton),
-      state_(cloth_.start()) {
+      state_(cloth_.start()),
+      solid_targets_(world_.solids().size()),
+      awaits_step_(world_.solids().size(), 0),
+      shape_targets_(world_.solids().size()) {
+  make_stepper();
+}
+
+Simulation::~Simulation() = default;
+
+// A new one goes on as the old one would.
+void Simulation::make_stepper() {
+  ExternalForces external = stepper_ ? stepper_->external() : cloth_.external();
+  const std::vector<double> memory = stepper_ ? stepper_->solver().memory() : std::vector<double>{};
+  stepper_ = std::make_unique<Stepper>(cloth_.nodes(), cloth_.force_models(), std::move(external),
+                                       options_.integrator, options_.solver, options_.newton);
+  stepper_->solver().restore_memory(memory);
   // Halved steps keep the core of whole ones, and its symbolic work.
-  stepper_.choose_core(scene_.time.step);
+  if (clock_.longest > 0.0) stepper_->choose_core(clock_.longest);
+}
+
+void Simulation::prepare(double h) {
+  if (h <= clock_.longest) return;
+  clock_.longest = h;
+  if (options_.integrator == IntegratorKind::imex_adaptive) {
+    cloth_.make_springs(world_, h);
+    make_stepper();
+  } else {
+    stepper_->choose_core(h);
+  }
 }
 
 WorstStretch Simulation::worst_stretch() const {
@@ -60,63 +104,48 @@ WorstStretch Simulation::worst_stretch() const {
   return worst;
 }
 
-std::vector<InputFile> Simulation::input_files() const {
-  std::vector<InputFile> files;
-  for (std::size_t c = 0; c < scene_.cloths.size(); ++c)
-    if (scene_.cloths[c].from_file)
-      files.push_back({scene_.cloths[c].mesh, cloth_.parts()[c].file_sum});
-  if (!surface_contact_) return files;
-  for (const MeshSolid& solid : surface_contact_->solids()) {
-    files.push_back({solid.solid().mesh, solid.mesh_sum()});
-    if (!solid.solid().motion.empty()) files.push_back({solid.solid().motion, solid.motion_sum()});
-  }
-  return files;
-}
-
-void Simulation::restore(State state, ContactState contacts, int steps,
-                         std::span<const double> solver_memory, ClothContactState surface_contact) {
-  stepper_.solver().restore_memory(solver_memory);
-  state_ = std::move(state);
-  contact_.restore(std::move(contacts));
-  if (surface_contact_) surface_contact_->restore(std::move(surface_contact));
-  steps_ = steps;
-}
-
-Status Simulation::step(StepRecord& record) {
+StepReport Simulation::step(double h) {
   Timer timer;
-  record = {};
-  record.step = steps_ + 1;
-  // Counted, not summed up: a thousand additions of h would drift from the times that key frames
-  // are given at.
-  state_.time = steps_ * scene_.time.step;
-  if (Status status = advance(scene_.time.step, 0, record); !status.ok()) {
-    status.message =
-        fmt::format("step {} (t = {:.6g} s): {}", record.step, state_.time, status.message);
-    return status;
+  {
+    Validator v;
+    v.inside("", [&] { describe_step(v, h); });
+    v.finish();
   }
-  state_.time = ++steps_ * scene_.time.step;
+  prepare(h);
+  if (h != clock_.h) clock_.origin = state_.time, clock_.since_origin = 0, clock_.h = h;
+  StepReport record;
+  record.step = clock_.steps + 1;
+  state_.time = clock_.origin + clock_.since_origin * h;
+  begin_moves(h);
+  if (record.status = advance(h, 0, record); !record.ok()) {
+    record.status.message =
+        fmt::format("step {} (t = {:.6g} s): {}", record.step, state_.time, record.status.message);
+    return record;
+  }
+  end_moves();
+  ++clock_.steps;
+  state_.time = clock_.origin + ++clock_.since_origin * h;
   record.time = state_.time;
   note_state(record);
   look_for_intersections(record);
   record.step_ms = timer.milliseconds();
-  return {};
+  return record;
 }
 
-Status Simulation::advance(double h, int halvings, StepRecord& record) {
-  const bool may_halve = halvings < scene_.time.max_halvings;
+Status Simulation::advance(double h, int halvings, StepReport& record) {
+  const bool may_halve = halvings < options_.max_halvings;
   double beyond = 0.0;
   Status status = try_step(h, may_halve, beyond, record);
-  if (status.ok() && halvings == 0 && on_solved) on_solved(*this, last_summary_);
-  const bool overshot = status.ok() && beyond > scene_.time.overshoot_limit;
+  if (status.ok() && halvings == 0 && on_solved) on_solved(last_summary_);
+  const bool overshot = status.ok() && beyond > options_.overshoot_limit;
   if (may_halve && (!status.ok() || overshot)) return advance_halves(h, halvings, record);
   // Without halving, as in the paper, it is the user's choice to accept what comes.
-  if (overshot && scene_.time.max_halvings > 0)
-    record.overshoot = std::max(record.overshoot, beyond);
+  if (overshot && options_.max_halvings > 0) record.overshoot = std::max(record.overshoot, beyond);
   if (status.ok()) status = accept(h, record);
   return status.ok() || !may_halve ? status : advance_halves(h, halvings, record);
 }
 
-Status Simulation::advance_halves(double h, int halvings, StepRecord& record) {
+Status Simulation::advance_halves(double h, int halvings, StepReport& record) {
   ++record.retries;
   const State state = state_;
   const ContactState contacts = contact_.state();
@@ -124,16 +153,16 @@ Status Simulation::advance_halves(double h, int halvings, StepRecord& record) {
       surface_contact_ ? surface_contact_->state() : ClothContactState{};
   Status status;
   for (int half = 0; half < 2 && status.ok(); ++half) {
-    stepper_.start_afresh(state_);
+    stepper_->start_afresh(state_);
     status = advance(h / 2, halvings + 1, record);
   }
   if (status.ok()) {
-    stepper_.start_afresh(state_);
+    stepper_->start_afresh(state_);
   } else {
     state_ = state;
     contact_.restore(contacts);
     if (surface_contact_) surface_contact_->restore(surface_contact);
-    if (halvings + 1 == scene_.time.max_halvings)
+    if (halvings + 1 == options_.max_halvings)
       status.message += fmt::format(" (also with steps of {:.3g} s)", h / 2);
   }
   return status;
@@ -141,20 +170,20 @@ Status Simulation::advance_halves(double h, int halvings, StepRecord& record) {
 
 double Simulation::largest_overshoot() const {
   // it has iterated until the forces at the end agree
-  if (stepper_.integrator().is_nonlinear()) return 0.0;
+  if (stepper_->integrator().is_nonlinear()) return 0.0;
   double largest = 0.0;
   for (const SpringModel* model : cloth_.stretch_springs())
-    largest = std::max(largest, taut::largest_overshoot(*model, state_.x, stepper_.x_end()));
+    largest = std::max(largest, taut::largest_overshoot(*model, state_.x, stepper_->x_end()));
   return largest;
 }
 
-Status Simulation::try_step(double h, bool may_halve, double& overshoot, StepRecord& record) {
+Status Simulation::try_step(double h, bool may_halve, double& overshoot, StepReport& record) {
   pins_.reset(cloth_.nodes());
   cloth_.constrain_pins(state_.time, h, state_.x, pins_);
   held_ = pins_;
   if (surface_contact_) surface_contact_->hold_zones(state_, h, held_);
-  stepper_.begin(state_, h);
-  record.assemble_ms += stepper_.assemble_ms();
+  stepper_->begin(state_, h);
+  record.assemble_ms += stepper_->assemble_ms();
   Timer contact_timer;
   std::vector<Vec3> predicted(state_.x.size());
   for (std::size_t i = 0; i < predicted.size(); ++i) predicted[i] = state_.x[i] + h * state_.v[i];
@@ -164,22 +193,22 @@ Status Simulation::try_step(double h, bool may_halve, double& overshoot, StepRec
 }
 
 Status Simulation::correct(double h, std::vector<Vec3>& corrected, bool& changed,
-                           StepRecord& record) {
+                           StepReport& record) {
   changed = contact_.move_out(corrected) > 0;
   if (!surface_contact_) return {};
-  std::vector<Vec3> v_end(stepper_.v_end().begin(), stepper_.v_end().end());
+  std::vector<Vec3> v_end(stepper_->v_end().begin(), stepper_->v_end().end());
   if (changed)
     for (std::size_t i = 0; i < v_end.size(); ++i)
-      v_end[i] += (corrected[i] - stepper_.x_end()[i]) / h;
+      v_end[i] += (corrected[i] - stepper_->x_end()[i]) / h;
   Status status = surface_contact_->correct(state_.time, h, state_.x, v_end, pins_, contact_,
                                             corrected, changed);
   note_surface_contact(record);
   return status;
 }
 
-Status Simulation::accept(double h, StepRecord& record) {
+Status Simulation::accept(double h, StepReport& record) {
   Timer contact_timer;
-  std::vector<Vec3> corrected(stepper_.x_end().begin(), stepper_.x_end().end());
+  std::vector<Vec3> corrected(stepper_->x_end().begin(), stepper_->x_end().end());
   bool changed = false;
   const Status status = correct(h, corrected, changed, record);
   record.contact_ms += contact_timer.milliseconds();
@@ -190,12 +219,12 @@ Status Simulation::accept(double h, StepRecord& record) {
   record.deepest_m = std::max(record.deepest_m, contact_.deepest());
   record.contacts =
       contact_.contacts() + (surface_contact_ ? surface_contact_->counts().pushing : 0);
-  stepper_.commit(state_);
-  if (changed) stepper_.correct(state_, corrected, h);
+  stepper_->commit(state_);
+  if (changed) stepper_->correct(state_, corrected, h);
   return {};
 }
 
-void Simulation::note_surface_contact(StepRecord& record) const {
+void Simulation::note_surface_contact(StepReport& record) const {
   const ClothContactCounts& counts = surface_contact_->counts();
   record.pairs_tested += counts.tested;
   record.near_pairs = counts.near;
@@ -210,9 +239,9 @@ void Simulation::note_surface_contact(StepRecord& record) const {
   record.zone_ms += counts.zone_ms;
 }
 
-void Simulation::look_for_intersections(StepRecord& record) {
-  const int every = scene_.contact.check_every;
-  if (!surface_contact_ || every == 0 || steps_ % every != 0) return;
+void Simulation::look_for_intersections(StepReport& record) {
+  const int every = world_.contact.check_every;
+  if (!surface_contact_ || every == 0 || clock_.steps % every != 0) return;
   Timer timer;
   record.intersections =
       static_cast<int>(surface_contact_->intersections(state_.time, state_.x).size());
@@ -221,23 +250,23 @@ void Simulation::look_for_intersections(StepRecord& record) {
 
 // Where the step may be halved, it ends with the first pass that overshoots: the others would be
 // solved for nothing.
-Status Simulation::solve_passes(bool may_halve, double& overshoot, StepRecord& record) {
+Status Simulation::solve_passes(bool may_halve, double& overshoot, StepReport& record) {
   SolveSummary summary;
   for (bool again = true; again;) {
     constraints_ = held_;
     Timer contact_timer;
     contact_.constrain(constraints_);
     record.contact_ms += contact_timer.milliseconds();
-    const double assembled = stepper_.assemble_ms();
+    const double assembled = stepper_->assemble_ms();
     summary = solve_or_fall_back(record);
-    record.assemble_ms += stepper_.assemble_ms() - assembled;
+    record.assemble_ms += stepper_->assemble_ms() - assembled;
     note_solve(summary, record);
     ++record.contact_passes;
     if (!summary.status.ok()) return summary.status;
     overshoot = largest_overshoot();
     contact_timer.lap();
-    again = !(may_halve && overshoot > scene_.time.overshoot_limit) &&
-            contact_.update(stepper_.x_end(), stepper_.constraint_impulse());
+    again = !(may_halve && overshoot > options_.overshoot_limit) &&
+            contact_.update(stepper_->x_end(), stepper_->constraint_impulse());
     record.contact_ms += contact_timer.milliseconds();
   }
   record.dof = constraints_.free_dofs();
@@ -246,22 +275,22 @@ Status Simulation::solve_passes(bool may_halve, double& overshoot, StepRecord& r
   return {};
 }
 
-SolveSummary Simulation::solve_or_fall_back(StepRecord& record) {
-  SolveSummary summary = stepper_.solve(constraints_, contact_.impulses());
+SolveSummary Simulation::solve_or_fall_back(StepReport& record) {
+  SolveSummary summary = stepper_->solve(constraints_, contact_.impulses());
   if (summary.status.ok()) return summary;
   const std::string reason = summary.status.message;
-  if (!fallback_) fallback_ = make_solver(fallback_options(scene_.solver));
+  if (!fallback_) fallback_ = make_solver(fallback_options(options_.solver));
   ++record.fallbacks;
-  summary = stepper_.solve(constraints_, contact_.impulses(), *fallback_);
+  summary = stepper_->solve(constraints_, contact_.impulses(), *fallback_);
   if (!summary.status.ok())
-    summary.status.message = fmt::format("{}: {}; then {}: {}", scene_.solver.name, reason,
+    summary.status.message = fmt::format("{}: {}; then {}: {}", options_.solver.name, reason,
                                          summary.solver, summary.status.message);
   return summary;
 }
 
-void Simulation::note_solve(const SolveSummary& summary, StepRecord& record) const {
+void Simulation::note_solve(const SolveSummary& summary, StepReport& record) const {
   record.solver = summary.method;
-  record.newton_iterations += stepper_.newton_iterations();
+  record.newton_iterations += stepper_->newton_iterations();
   record.fallbacks += summary.fallbacks;
   if (record.contact_passes == 0 || summary.precision == std::string_view("double"))
     record.precision = summary.precision;
@@ -271,7 +300,7 @@ void Simulation::note_solve(const SolveSummary& summary, StepRecord& record) con
   record.factor_ms += summary.factor_ms;
   record.solve_ms += summary.solve_ms + summary.reduce_ms;
   if (summary.method.starts_with("core_"))
-    record.core_springs = stepper_.core_springs(summary.core);
+    record.core_springs = stepper_->core_springs(summary.core);
   // `auto` may change its method between passes: iterations of one without a bound are not to be
   // held against another's.
   const int bound = summary.bound_iterations;
@@ -279,7 +308,7 @@ void Simulation::note_solve(const SolveSummary& summary, StepRecord& record) con
   record.bound_iterations = bounded ? std::max(record.bound_iterations, bound) : -1;
 }
 
-void Simulation::note_state(StepRecord& record) const {
+void Simulation::note_state(StepReport& record) const {
   record.nodes = cloth_.nodes();
   const auto masses = cloth_.external().masses();
   record.kinetic_J = ordered_sum(cloth_.nodes(), [&](Index begin, Index end) {

@@ -4,15 +4,17 @@
 
 namespace taut {
 
-SolidVariants solid_variants(const Scene& scene, const ClothModel& cloth) {
+SolidVariants solid_variants(const World& world, const ClothModel& cloth) {
   SolidVariants result;
-  for (const Solid& solid : scene.solids) {
+  for (int k = 0; k < static_cast<int>(world.solids().size()); ++k) {
+    const Solid& solid = world.solids()[static_cast<std::size_t>(k)];
     const std::size_t general = result.solids.size();
     result.solids.push_back(solid);
     result.meets.emplace_back();
+    result.of.push_back(k);
     // Meshes are part of the collision surface, which has its own table (contact/pair_laws.h).
     if (solid.shape == SolidShape::mesh) continue;
-    for (const ContactPair& pair : scene.contact.pairs) {
+    for (const ContactPair& pair : world.contact.pairs) {
       const auto part = std::ranges::find(cloth.parts(), pair.cloth, &ClothPart::name);
       if (pair.with != solid.name || part == cloth.parts().end()) continue;
       Solid variant = solid;
@@ -21,6 +23,7 @@ SolidVariants solid_variants(const Scene& scene, const ClothModel& cloth) {
       const auto nodes = static_cast<std::size_t>(cloth.nodes());
       result.solids.push_back(std::move(variant));
       result.meets.emplace_back(nodes, 0);
+      result.of.push_back(k);
       result.meets[general].resize(nodes, 1);
       for (Index i = part->first_node; i < part->first_node + part->node_count; ++i)
         result.meets.back()[i] = 1, result.meets[general][i] = 0;

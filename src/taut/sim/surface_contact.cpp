@@ -38,12 +38,13 @@ std::vector<CollisionBody> bodies_of(const ClothModel& cloth,
 
 }  // namespace
 
-SurfaceContact::SurfaceContact(const Scene& scene, ClothModel& cloth)
-    : gravity_(scene.gravity), nodes_(cloth.nodes()) {
-  for (const Solid& solid : scene.solids)
-    if (solid.shape == SolidShape::mesh) solids_.emplace_back(solid, scene.folder);
+SurfaceContact::SurfaceContact(const World& world, ClothModel& cloth)
+    : gravity_(world.gravity), nodes_(cloth.nodes()) {
+  for (std::size_t k = 0; k < world.solids().size(); ++k)
+    if (world.solids()[k].shape == SolidShape::mesh)
+      solids_.emplace_back(world.solids()[k], world.surfaces()[k]);
   CollisionSurface surface = surface_of(cloth, solids_);
-  ContactOptions options = scene.contact;
+  ContactOptions options = world.contact;
   std::vector<Vec3> start = cloth.start().x;
   start.resize(static_cast<std::size_t>(surface.vertices));
   place_solids(0.0, start);
@@ -55,12 +56,12 @@ SurfaceContact::SurfaceContact(const Scene& scene, ClothModel& cloth)
                                             mass_, options);
   inverse_mass_.resize(mass_.size(), 0.0);
   held_.resize(mass_.size(), 1);
-  if (options.untangle) untangle_start(scene, cloth);
+  if (options.untangle) untangle_start(world, cloth);
   if (!options.allow_intersections) refuse_intersections(cloth.start().x);
 }
 
-bool SurfaceContact::wanted(const Scene& scene) {
-  return scene.contact.self || std::ranges::any_of(scene.solids, [](const Solid& s) {
+bool SurfaceContact::wanted(const World& world) {
+  return world.contact.self || std::ranges::any_of(world.solids(), [](const Solid& s) {
            return s.shape == SolidShape::mesh;
          });
 }

@@ -16,19 +16,19 @@
 #include "taut/contact/cloth_contact.h"
 #include "taut/contact/intersection.h"
 #include "taut/contact/untangle.h"
-#include "taut/scene/cloth_model.h"
+#include "taut/sim/cloth_model.h"
 #include "taut/sim/mesh_solid.h"
 
 namespace taut {
 
 class SurfaceContact {
  public:
-  // Reads the solids' meshes. Throws InputError as MeshSolid, and when cloth intersects itself or a
-  // solid at the start and the scene does not allow it. With contact.untangle it is drawn apart,
+  // Throws InputError when cloth intersects itself or a
+  // solid at the start and the world does not allow it. With contact.untangle it is drawn apart,
   // and gets other start positions; throws when that cannot be done.
-  SurfaceContact(const Scene& scene, ClothModel& cloth);
-  // Whether the scene needs it: contact.self, or a solid that is a mesh.
-  static bool wanted(const Scene& scene);
+  SurfaceContact(const World& world, ClothModel& cloth);
+  // Whether the world needs it: contact.self, or a solid that is a mesh.
+  static bool wanted(const World& world);
 
   void hold_zones(const State& state, double h, ConstraintSet& constraints) const;
 
@@ -48,7 +48,10 @@ class SurfaceContact {
   // "cloth 'a', triangle 12, and cloth 'b', triangle 40": where the first of them is.
   std::string describe(const Intersection& intersection) const;
 
+  // The solids that are meshes, in the world's order.
   std::span<const MeshSolid> solids() const { return solids_; }
+  std::span<MeshSolid> solids() { return solids_; }
+  void set_gravity(const Vec3& gravity) { gravity_ = gravity; }
   const ClothContactCounts& counts() const { return contact_->counts(); }
   const ClothContact& contact() const { return *contact_; }
   const ClothContactState& state() const { return kept_; }
@@ -61,7 +64,7 @@ class SurfaceContact {
   void weigh_nodes(const ConstraintSet& pins);
   void place_solids(double time, std::vector<Vec3>& x) const;
   void refuse_intersections(std::span<const Vec3> start);
-  void untangle_start(const Scene& scene, ClothModel& cloth);
+  void untangle_start(const World& world, ClothModel& cloth);
   std::string places(std::span<const Intersection> found) const;
 
   Vec3 gravity_;

@@ -5,7 +5,6 @@
 #include <map>
 
 #include "taut/base/error.h"
-#include "taut/scene/doubts.h"
 #include "taut/sim/surface_contact.h"
 
 namespace taut {
@@ -32,15 +31,15 @@ std::vector<double> rest_lengths(const CollisionSurface& surface, const ClothMod
 }
 
 // The pinned nodes that no untangling takes out of solids; "" when there are none.
-std::string pins_inside(const Scene& scene, const ClothModel& cloth, std::span<const Vec3> x,
+std::string pins_inside(const World& world, const ClothModel& cloth, std::span<const Vec3> x,
                         std::span<const std::uint8_t> held) {
   std::string text;
   for (const ClothPart& part : cloth.parts())
-    for (const Solid& solid : scene.solids)
+    for (const Solid& solid : world.solids())
       for (Index i = 0; i < part.node_count; ++i) {
         const auto node = static_cast<std::size_t>(part.first_node + i);
-        const double depth = held[node] ? depth_at_start(solid, x[node]) : 0.0;
-        if (depth <= scene.contact.touch_tolerance) continue;
+        const double depth = held[node] ? depth_inside(solid, x[node], 0.0) : 0.0;
+        if (depth <= world.contact.touch_tolerance) continue;
         text +=
             fmt::format("\n  a pin holds node {} of cloth '{}' inside solid '{}', {:.3g} m deep", i,
                         part.name, solid.name, depth);
@@ -51,17 +50,17 @@ std::string pins_inside(const Scene& scene, const ClothModel& cloth, std::span<c
 
 }  // namespace
 
-void SurfaceContact::untangle_start(const Scene& scene, ClothModel& cloth) {
+void SurfaceContact::untangle_start(const World& world, ClothModel& cloth) {
   std::vector<Vec3> x = positions(0.0, cloth.start().x);
   ConstraintSet pins(nodes_);
-  cloth.constrain_pins(0.0, scene.time.step, cloth.start().x, pins);
+  cloth.constrain_pins(0.0, 0.0, cloth.start().x, pins);
   std::vector<std::uint8_t> held(x.size(), 1);
   for (Index i = 0; i < nodes_; ++i) held[i] = pins.ndof(i) == 0;
   const CollisionSurface& surface = contact_->surface();
   const std::vector<double> rest = rest_lengths(surface, cloth, x);
   untangled_ = untangle(
-      {surface, contact_->bodies(), mass_, held, rest, scene.solids, contact_->options()}, x);
-  if (const std::string inside = untangled_->status.ok() ? "" : pins_inside(scene, cloth, x, held);
+      {surface, contact_->bodies(), mass_, held, rest, world.solids(), contact_->options()}, x);
+  if (const std::string inside = untangled_->status.ok() ? "" : pins_inside(world, cloth, x, held);
       !inside.empty())
     throw InputError(
         fmt::format("the start cannot be untangled, since pins are not moved:{}\nNothing was "

@@ -67,6 +67,8 @@ class Stepper {
   std::span<const Vec3> impulses() const { return given_; }
   const Integrator& integrator() const { return *integrator_; }
   const ExternalForces& external() const { return external_; }
+  // Air, gravity and applied forces of the steps to come.
+  ExternalForces& external() { return external_; }
   Assembler& assembler() { return assembler_; }
   ConstrainedSolver& solver() { return *solver_; }
   const ConstrainedSolver& solver() const { return *solver_; }

@@ -6,7 +6,7 @@
 
 #include "taut/base/error.h"
 #include "taut/scene/scene_file.h"
-#include "taut/sim/simulation.h"
+#include "taut/scene/scene_simulation.h"
 
 namespace taut {
 namespace {
@@ -38,8 +38,8 @@ struct Means {
 };
 
 Means run(const std::string& toml, int steps) {
-  Simulation simulation(read_scene_text(toml, "pair.toml"));
-  StepRecord record;
+  SceneSimulation simulation(read_scene_text(toml, "pair.toml"));
+  StepReport record;
   const auto means = [&] {
     Means m;
     for (const ClothPart& part : simulation.cloth().parts()) {

@@ -19,8 +19,8 @@ Scene scene_of(const std::string& text, const std::string& folder = "") {
   return read_scene_text("[time]\nstep = 5e-3\n" + text, folder + "scene.toml", {});
 }
 
-void advance(Simulation& simulation, int steps) {
-  StepRecord record;
+void advance(SceneSimulation& simulation, int steps) {
+  StepReport record;
   for (int k = 0; k < steps; ++k) ASSERT_TRUE(simulation.step(record).ok());
 }
 
@@ -32,7 +32,7 @@ density = 0.15
 )";
 
 TEST(NodeContact, IsWhereClothTouchesTheBall) {
-  Simulation simulation(scene_of(R"(
+  SceneSimulation simulation(scene_of(R"(
 [[cloth]]
 grid = { nodes = [31, 31], origin = [-0.5, -0.5, 0.42], u = [1, 0, 0], v = [0, 1, 0] }
 density = 0.15
@@ -65,7 +65,7 @@ thickness = 0.01
 }
 
 TEST(NodeContact, TellsClothFromSolids) {
-  Simulation simulation(scene_of(sheet + R"(
+  SceneSimulation simulation(scene_of(sheet + R"(
 [[cloth]]
 name = "upper"
 grid = { nodes = [9, 9], origin = [-0.11, -0.11, 0.04], u = [0.2, 0, 0], v = [0, 0.2, 0] }
@@ -97,7 +97,7 @@ TEST(NodeContact, KnowsSolidsThatAreMeshes) {
   const double s = 0.5;
   write_obj(folder / "table.obj",
             {{{-s, -s, 0}, {s, -s, 0}, {s, s, 0}, {-s, s, 0}}, {{0, 1, 2}, {0, 2, 3}}, {}});
-  Simulation simulation(
+  SceneSimulation simulation(
       scene_of(sheet + "[[solid]]\nshape = \"mesh\"\nmesh = \"table.obj\"\nfriction = 0.5\n",
                (folder / "").string()));
   advance(simulation, 3);
@@ -116,7 +116,7 @@ TEST(NodeContact, SameForAnyNumberOfThreadsAndAfterAResume) {
   std::uint8_t seen = 0;
   for (const int threads : {1, 4}) {
     set_thread_count(threads);
-    Simulation simulation(scene), resumed(scene);
+    SceneSimulation simulation(scene), resumed(scene);
     for (int k = 1; k <= steps; ++k) {
       advance(simulation, 1);
       if (k > interrupted) advance(resumed, 1);

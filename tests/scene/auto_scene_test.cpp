@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "taut/scene/scene_file.h"
-#include "taut/sim/simulation.h"
+#include "taut/scene/scene_simulation.h"
 #include "taut/solve/reference.h"
 
 namespace taut {
@@ -48,15 +48,16 @@ TEST(AutoScene, SolvesEveryRegime) {
                                      fmt::format("cloth.k_stretch={}", k_stretch),
                                      fmt::format("solver.tolerance={}", tolerance)});
         EXPECT_EQ(scene.solver.name, "auto") << "the default";
-        Simulation simulation(scene);
+        SceneSimulation simulation(scene);
         double error = 0.0, solved_stiffness = 0.0;
-        simulation.on_solved = [&](Simulation& solved, const SolveSummary&) {
-          const LinearSystem system = solved.stepper().system();
+        simulation.on_solved = [&](const SolveSummary&) {
+          const LinearSystem system = simulation.stepper().system();
           solved_stiffness = system.stiffness;
-          error = anorm_error(system, flat(solved.stepper().unknown()), reference_solution(system));
+          error =
+              anorm_error(system, flat(simulation.stepper().unknown()), reference_solution(system));
         };
         for (int step = 0; step < 12; ++step) {
-          StepRecord record;
+          StepReport record;
           const Status status = simulation.step(record);
           ASSERT_TRUE(status.ok()) << status.message;
           EXPECT_LT(error, 10.0 * tolerance) << record.solver << ", step " << step;
@@ -85,10 +86,10 @@ TEST(AutoScene, SolvesEveryRegime) {
 
 TEST(AutoScene, TheCoreIsASettingOfItsOwn) {
   const auto springs = [](const char* setting) {
-    Simulation simulation(read_scene_text(
+    SceneSimulation simulation(read_scene_text(
         ball, "/scenes/test.toml",
         std::vector<std::string>{"solver.name=core_pcg:block", "cloth.k_shear=300", setting}));
-    StepRecord record;
+    StepReport record;
     EXPECT_TRUE(simulation.step(record).ok());
     EXPECT_LE(record.iterations, record.bound_iterations);
     return record.core_springs;

@@ -8,16 +8,16 @@
 
 #include "contact/independent_judge.h"
 #include "io/temporary_folder.h"
-#include "sim/tangled_scenes.h"
+#include "scene/tangled_scenes.h"
 #include "taut/base/error.h"
 #include "taut/io/obj.h"
 #include "taut/scene/scene_file.h"
-#include "taut/sim/simulation.h"
+#include "taut/scene/scene_simulation.h"
 
 namespace taut {
 namespace {
 
-std::size_t judged(const Simulation& simulation) {
+std::size_t judged(const SceneSimulation& simulation) {
   const SurfaceContact& contact = *simulation.surface_contact();
   const CollisionSurface& surface = contact.contact().surface();
   return test::intersecting_triangles(contact.positions(0.0, simulation.state().x),
@@ -28,7 +28,7 @@ std::size_t judged(const Simulation& simulation) {
 std::size_t judged_unrepaired(Scene scene) {
   scene.contact.untangle = false;
   scene.contact.allow_intersections = true;
-  return judged(Simulation(std::move(scene)));
+  return judged(SceneSimulation(std::move(scene)));
 }
 
 // The shipped T-shirt laid flat: its front and back 6 mm apart, less towards the seams; jittered so
@@ -70,13 +70,13 @@ TEST_F(FlatShirt, IsDrawnApartAndRuns) {
   if (!test::judge_available()) GTEST_SKIP() << test::no_judge;
   for (unsigned seed = 1; seed <= 10; ++seed) {
     ASSERT_GT(judged_unrepaired(scene(seed)), 10u);
-    Simulation simulation(scene(seed));
+    SceneSimulation simulation(scene(seed));
     const UntangleReport& report = *simulation.surface_contact()->untangled();
     EXPECT_EQ(judged(simulation), 0u);
     EXPECT_EQ(simulation.cloth().start().x, simulation.state().x);
     EXPECT_EQ(simulation.cloth().surface().positions, simulation.state().x);
     EXPECT_LE(report.stretch_after, report.stretch_before + 0.03);
-    StepRecord record;
+    StepReport record;
     for (int k = 0; k < (seed > 2 ? 0 : 3); ++k) {
       ASSERT_TRUE(simulation.step(record).ok());
       EXPECT_EQ(record.intersections, 0);
@@ -86,8 +86,8 @@ TEST_F(FlatShirt, IsDrawnApartAndRuns) {
 
 TEST(UntangleScene, WhatCannotBeDrawnApartIsRefusedWithItsFaces) {
   try {
-    Simulation simulation(read_scene_text(test::pierced_scene(), "/scenes/test.toml",
-                                          std::vector<std::string>{"contact.untangle=true"}));
+    SceneSimulation simulation(read_scene_text(test::pierced_scene(), "/scenes/test.toml",
+                                               std::vector<std::string>{"contact.untangle=true"}));
     FAIL() << "not refused";
   } catch (const InputError& error) {
     const std::string text = error.what();
@@ -103,13 +103,13 @@ TEST(UntangleScene, PinnedNodesStayWhereTheirPinsAre) {
   const Scene scene =
       read_scene_text(text, "/scenes/test.toml", std::vector<std::string>{"contact.untangle=true"});
   const ClothModel before(scene);
-  Simulation simulation(scene);
+  SceneSimulation simulation(scene);
   const UntangleReport& report = *simulation.surface_contact()->untangled();
   EXPECT_GT(report.intersections_before, 0);
   EXPECT_GT(report.moved, 20);
   for (const Index pinned : {0, 14})
     EXPECT_EQ(simulation.state().x[pinned], before.start().x[pinned]);
-  StepRecord record;
+  StepReport record;
   ASSERT_TRUE(simulation.step(record).ok());
   for (const Index pinned : {0, 14})
     EXPECT_LT((simulation.state().x[pinned] - before.start().x[pinned]).norm(), 1e-12);

@@ -1,13 +1,13 @@
 #pragma once
-// The scene's cloths as one system of nodes: positions, masses, springs, pins. Nodes of cloth c are
-// first_node ... first_node + node_count - 1, in the order of its grid or file.
+// The world's cloths as one system of nodes: positions, masses, springs, pins. Nodes of cloth c are
+// first_node ... first_node + node_count - 1, in the order of its mesh.
 
 #include <memory>
 
 #include "taut/constraint/constraint_set.h"
 #include "taut/element/external.h"
 #include "taut/element/spring_model.h"
-#include "taut/scene/scene.h"
+#include "taut/sim/pinned_nodes.h"
 #include "taut/step/state.h"
 
 namespace taut {
@@ -16,29 +16,16 @@ struct ClothPart {
   std::string name;
   Index first_node = 0, node_count = 0;
   Index first_triangle = 0, triangle_count = 0;
-  std::uint64_t file_sum = 0;  // of what its mesh file holds (base/checksum.h); 0: it has none
-};
-
-// Ascending, each once.
-std::vector<Index> selected_nodes(const Cloth& cloth, const NodeSelection& where);
-
-// A pin's nodes and their places at time 0.
-struct PinnedNodes {
-  std::vector<Index> nodes;
-  std::vector<Vec3> start;  // m
-  Solid path;               // carries the key frames; its pose is the pin's
-  Vec3 pivot = Vec3::Zero();
-  double release = -1.0;  // s
-  // Where a node should be at this time, m.
-  Vec3 target(std::size_t k, double time) const;
-  bool holds(double time) const { return release < 0.0 || time < release; }
 };
 
 class ClothModel {
  public:
-  // Builds everything the scene says; reads mesh files. Throws InputError (unreadable mesh, faulty
-  // triangles, pins of nodes that do not exist).
-  explicit ClothModel(const Scene& scene);
+  // The world is a valid one. Throws InputError where two joined nodes lie in one place.
+  explicit ClothModel(const World& world);
+
+  // Anew, of these cloths' materials. explicit_step: where it is above 0, springs that an explicit
+  // step of that length (s) takes stably are models of their own (element/explicit_split.h).
+  void make_springs(const World& world, double explicit_step = 0.0);
 
   Index nodes() const { return static_cast<Index>(start_.x.size()); }
   std::span<const ClothPart> parts() const { return parts_; }
@@ -53,14 +40,17 @@ class ClothModel {
   // Other start positions, one a node; what pins hold must be where it was. m.
   void place_start(std::span<const Vec3> x);
 
-  // The pins' constraints for a step from x at `time` to time + h: displacements to where the path
-  // will be.
+  // In the order of the world's, then those that the program added.
+  std::vector<PinnedNodes>& pins() { return pins_; }
+  std::span<const PinnedNodes> pins() const { return pins_; }
+  // The pins' constraints for a step from x at `time` to time + h: displacements to where they will
+  // be.
   void constrain_pins(double time, double h, std::span<const Vec3> x,
                       ConstraintSet& constraints) const;
 
  private:
-  void add_cloth(const Cloth& cloth, const Scene& scene, std::vector<double>& masses);
-  void add_pins(const Cloth& cloth, const ClothPart& part);
+  void add_cloth(const ClothOptions& cloth, std::vector<double>& masses);
+  void add_pin(const WorldPin& pin);
 
   std::vector<ClothPart> parts_;
   std::vector<std::unique_ptr<SpringModel>> springs_;

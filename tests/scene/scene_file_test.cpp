@@ -9,7 +9,7 @@
 #include "io/temporary_folder.h"
 #include "taut/base/error.h"
 #include "taut/base/file.h"
-#include "taut/sim/simulation.h"
+#include "taut/scene/scene_simulation.h"
 #include "test_data.h"
 
 namespace taut {
@@ -216,8 +216,8 @@ TEST(ShippedScenes, BodyTakesABodyOfOnesOwn) {
                                           quoted("solid.0.motion", "body_A_to_T_9x13380x3.f32")};
   const Scene scene = read_scene(source_dir / "scenes/body.toml", settings);
   EXPECT_EQ(doubtful(scene), std::vector<std::string>{});
-  Simulation simulation(scene);
-  StepRecord record;
+  SceneSimulation simulation(scene);
+  StepReport record;
   ASSERT_TRUE(simulation.step(record).ok());
   EXPECT_EQ(record.intersections, 0);
 }

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "taut/scene/schema_parts.h"
+#include "taut/sim/describe.h"
 
 namespace taut {
 
@@ -28,9 +28,8 @@ void describe_pair(SchemaVisitor& v, ContactPair& pair) {
             .unset = pair.friction < 0.0});
 }
 
-template <class Named>
-bool has_name(const std::vector<Named>& items, const std::string& name) {
-  return std::ranges::any_of(items, [&](const Named& item) { return item.name == name; });
+bool has_name(std::span<const std::string> names, const std::string& name) {
+  return std::ranges::find(names, name) != names.end();
 }
 
 bool same_bodies(const ContactPair& a, const ContactPair& b) {
@@ -81,17 +80,16 @@ void describe_contact(SchemaVisitor& v, ContactOptions& contact) {
          [&](ContactPair& pair) { describe_pair(v, pair); });
 }
 
-void check_pairs(SchemaVisitor& v, const Scene& scene) {
-  const auto& pairs = scene.contact.pairs;
+void check_pairs(SchemaVisitor& v, std::span<const ContactPair> pairs,
+                 std::span<const std::string> cloths, std::span<const std::string> solids) {
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const ContactPair& pair = pairs[k];
     const auto complain = [&](bool holds, const std::string& what) {
       v.check(holds, "contact", fmt::format("contact.pair number {} (from 0): {}", k, what));
     };
-    const bool with_cloth = has_name(scene.cloths, pair.with);
-    complain(has_name(scene.cloths, pair.cloth),
-             fmt::format("there is no cloth named '{}'", pair.cloth));
-    complain(with_cloth || has_name(scene.solids, pair.with),
+    const bool with_cloth = has_name(cloths, pair.with);
+    complain(has_name(cloths, pair.cloth), fmt::format("there is no cloth named '{}'", pair.cloth));
+    complain(with_cloth || has_name(solids, pair.with),
              fmt::format("there is no cloth or solid named '{}'", pair.with));
     complain(pair.thickness >= 0.0 || pair.friction >= 0.0, "give a thickness, a friction or both");
     complain(!with_cloth || pair.thickness != 0.0,
@@ -100,6 +98,15 @@ void check_pairs(SchemaVisitor& v, const Scene& scene) {
       complain(!same_bodies(pairs[j], pair),
                fmt::format("number {} is of the same two: keep one of them", j));
   }
+}
+
+void check_names(SchemaVisitor& v, const char* key, std::span<const std::string> names) {
+  for (std::size_t i = 0; i < names.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      v.check(names[i] != names[j], key,
+              fmt::format("two entries are named '{}' (numbers {} and {}, from 0): give each its "
+                          "own name",
+                          names[i], j, i));
 }
 
 }  // namespace taut

@@ -9,7 +9,7 @@
 #include "taut/io/obj.h"
 #include "taut/io/pc2.h"
 #include "taut/scene/scene_file.h"
-#include "taut/sim/simulation.h"
+#include "taut/scene/scene_simulation.h"
 
 namespace taut {
 namespace {
@@ -80,8 +80,8 @@ mesh = "table.obj"
 friction = 0.5
 thickness = 2e-3
 )";
-  Simulation simulation(read_scene_text(text, (folder / "scene.toml").string(), {}));
-  StepRecord record;
+  SceneSimulation simulation(read_scene_text(text, (folder / "scene.toml").string(), {}));
+  StepReport record;
   for (int k = 0; k < 120; ++k) {
     ASSERT_TRUE(simulation.step(record).ok());
     ASSERT_EQ(record.intersections, 0);

@@ -5,7 +5,7 @@
 #include "taut/io/obj.h"
 #include "taut/mesh/topology.h"
 #include "taut/scene/scene_file.h"
-#include "taut/sim/simulation.h"
+#include "taut/scene/scene_simulation.h"
 #include "test_data.h"
 
 namespace taut {
@@ -59,10 +59,10 @@ TEST(TShirt, HangsByItsShoulders) {
   const TriangleMesh shirt = read_obj(path);
   const Topology topology = build_topology(shirt);
   const Index left = shoulder(shirt, -18, -14), right = shoulder(shirt, 14, 18);
-  Simulation simulation(read_scene_text(filled(scene_text, {{"SHIRT", path.string()},
-                                                            {"LEFT", std::to_string(left)},
-                                                            {"RIGHT", std::to_string(right)}}),
-                                        "/scenes/tshirt.toml"));
+  SceneSimulation simulation(read_scene_text(filled(scene_text, {{"SHIRT", path.string()},
+                                                                 {"LEFT", std::to_string(left)},
+                                                                 {"RIGHT", std::to_string(right)}}),
+                                             "/scenes/tshirt.toml"));
 
   const auto& springs = simulation.cloth().springs();
   ASSERT_EQ(springs.size(), 2u);
@@ -84,7 +84,7 @@ TEST(TShirt, HangsByItsShoulders) {
     return z;
   };
   const double hem = lowest();
-  StepRecord record;
+  StepReport record;
   double stretch = 0.0;
   for (int k = 0; k < 100; ++k) {
     ASSERT_TRUE(simulation.step(record).ok());

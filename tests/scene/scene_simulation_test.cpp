@@ -1,7 +1,7 @@
 // The simulation loop on small scenes: the same bits for any thread count, energy, going on from a
 // checkpoint, a solver that fails.
 
-#include "taut/sim/simulation.h"
+#include "taut/scene/scene_simulation.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -58,9 +58,9 @@ struct Outcome {
 };
 
 Outcome simulate(const Scene& scene, int steps) {
-  Simulation simulation(scene);
+  SceneSimulation simulation(scene);
   Outcome outcome;
-  StepRecord record;
+  StepReport record;
   for (int k = 0; k < steps; ++k) {
     const Status status = simulation.step(record);
     EXPECT_TRUE(status.ok()) << status.message;
@@ -119,8 +119,8 @@ TEST(Simulation, GoesOnFromACheckpointToTheSameBits) {
         Interrupted{"time.integrator=bdf2", "solver.name=auto", 23}}) {
     const Scene scene = scene_of(crowded, {integrator, solver, "cloth.grid.nodes=[21, 20]"});
     SCOPED_TRACE(fmt::format("{}, {}, step {}", integrator, solver, at));
-    Simulation whole(scene), resumed(scene);
-    StepRecord record;
+    SceneSimulation whole(scene), resumed(scene);
+    StepReport record;
     std::string bytes;
     for (int k = 0; k < 40; ++k) {
       if (k == at) {
@@ -182,8 +182,8 @@ TEST(Simulation, EnergyOfADampedSheetDecays) {
     settings.push_back("solver.tolerance=1e-8");
     const std::string& integrator = settings.front();
     const Scene scene = scene_of(pinned, settings);
-    Simulation simulation(scene);
-    StepRecord record;
+    SceneSimulation simulation(scene);
+    StepReport record;
     const auto height_energy = [&] {
       double sum = 0.0;
       for (Index i = 0; i < simulation.cloth().nodes(); ++i)
@@ -215,8 +215,8 @@ TEST(Simulation, ASolverThatGivesUpIsReplacedForThatSolveAndCounted) {
   const Scene good = scene_of(pinned, {"solver.name=\"mpcg\"", "solver.tolerance=1e-10"});
   Scene bad = good;
   bad.solver.max_iterations = 1;
-  Simulation reference(good), simulation(bad);
-  StepRecord record;
+  SceneSimulation reference(good), simulation(bad);
+  StepReport record;
   for (int k = 0; k < 10; ++k) {
     ASSERT_TRUE(reference.step(record).ok());
     EXPECT_EQ(record.fallbacks, 0);
@@ -246,13 +246,13 @@ compression = "linear"
 nodes = [0]
 )";
 
-State spin(const Scene& scene, int steps, std::vector<StepRecord>& records) {
-  Simulation simulation(scene);
+State spin(const Scene& scene, int steps, std::vector<StepReport>& records) {
+  SceneSimulation simulation(scene);
   State state = simulation.state();
   for (std::size_t i = 0; i < state.x.size(); ++i) state.v[i] = Vec3(0, 0, 100).cross(state.x[i]);
   simulation.restore(state, simulation.contact().state(), 0);
   records.assign(static_cast<std::size_t>(steps), {});
-  for (StepRecord& record : records) {
+  for (StepReport& record : records) {
     const Status status = simulation.step(record);
     EXPECT_TRUE(status.ok()) << status.message;
   }
@@ -260,7 +260,7 @@ State spin(const Scene& scene, int steps, std::vector<StepRecord>& records) {
 }
 
 TEST(Simulation, StepsThatOvershootAreHalved) {
-  std::vector<StepRecord> whole, halved;
+  std::vector<StepReport> whole, halved;
   spin(scene_of(spinning, {"time.max_halvings=0"}), 1, whole);
   spin(scene_of(spinning, {"time.max_halvings=6", "time.overshoot_limit=0.01"}), 1, halved);
   EXPECT_EQ(whole[0].retries, 0);
@@ -276,7 +276,7 @@ TEST(Simulation, StepsThatOvershootAreHalved) {
 // of them, which makes it Euler's method.
 TEST(Simulation, HalvesAreStepsOfHalfTheLength) {
   for (const char* integrator : {"semi_implicit_euler", "bdf2"}) {
-    std::vector<StepRecord> halved, half;
+    std::vector<StepReport> halved, half;
     const State a = spin(scene_of(spinning, {"time.overshoot_limit=0", "time.max_halvings=1",
                                              "solver.tolerance=1e-12",
                                              fmt::format("time.integrator=\"{}\"", integrator)}),
@@ -284,11 +284,11 @@ TEST(Simulation, HalvesAreStepsOfHalfTheLength) {
     const State b = spin(
         scene_of(spinning, {"time.max_halvings=0", "time.step=2e-3", "solver.tolerance=1e-12"}), 12,
         half);
-    for (const StepRecord& record : halved) ASSERT_EQ(record.retries, 1);
+    for (const StepReport& record : halved) ASSERT_EQ(record.retries, 1);
     for (std::size_t i = 0; i < a.x.size(); ++i)
       ASSERT_LT((a.x[i] - b.x[i]).norm(), 1e-9) << integrator << ", node " << i;
   }
-  std::vector<StepRecord> records;
+  std::vector<StepReport> records;
   EXPECT_FALSE(spin(scene_of(spinning, {"time.overshoot_limit=0", "time.max_halvings=1",
                                         "time.integrator=\"bdf2\""}),
                     1, records)
@@ -298,11 +298,11 @@ TEST(Simulation, HalvesAreStepsOfHalfTheLength) {
 
 TEST(Simulation, AStepThatCannotBeSolvedLeavesTheStateAsItWas) {
   Scene scene = scene_of(spinning);
-  Simulation simulation(scene);
+  SceneSimulation simulation(scene);
   State state = simulation.state();
   state.v[7] = Vec3(1e200, 0, 0);  // its square is not a number that a solver can hold
   simulation.restore(state, simulation.contact().state(), 0);
-  StepRecord record;
+  StepReport record;
   const Status status = simulation.step(record);
   ASSERT_FALSE(status.ok());
   EXPECT_NE(status.message.find("step 1"), std::string::npos) << status.message;
@@ -317,14 +317,14 @@ TEST(Simulation, AStepThatCannotBeSolvedLeavesTheStateAsItWas) {
 // = 11.
 TEST(Simulation, AdaptiveImexHoldsWhereImexExplodes) {
   const auto kinetic = [](const char* integrator) {
-    Simulation simulation(
+    SceneSimulation simulation(
         scene_of("gravity = [0, 0, 0]\n[time]\nstep = 6e-3\novershoot_limit = 1e6\n[[cloth]]\ngrid "
                  "= { nodes = [9, 9], u = [0.1, 0, 0], v "
                  "= [0, 0.1, 0] }\nnode_mass = 9.5e-6\nk_stretch = 60\nk_shear = 3\nk_bend = "
                  "0.01\ncompression = "
                  "\"linear\"\njitter = 1e-4\n",
                  {std::string("time.integrator=\"") + integrator + "\"", "contact.self=false"}));
-    StepRecord record;
+    StepReport record;
     double largest = 0.0;
     for (int k = 0; k < 200 && simulation.step(record).ok() && largest < 1.0; ++k)
       largest = std::max(largest, record.kinetic_J);
@@ -343,9 +343,9 @@ TEST(Simulation, PinsFollowTheirPathsExactly) {
                                  { time = 0.2, translation = [0.1, 0.3, 0] } ]
 )",
         {"time.integrator=\"" + std::string(integrator) + "\"", "time.step=2e-3"});
-    Simulation simulation(scene);
+    SceneSimulation simulation(scene);
     const std::vector<Vec3> start = simulation.state().x;
-    StepRecord record;
+    StepReport record;
     for (int k = 1; k <= 120; ++k) {
       ASSERT_TRUE(simulation.step(record).ok());
       const double t = 2e-3 * k;
@@ -362,8 +362,8 @@ TEST(Simulation, PinsFollowTheirPathsExactly) {
 
 TEST(Simulation, ReleasedPinsLetGo) {
   const Scene scene = scene_of(pinned + "release = 0.05\n");
-  Simulation simulation(scene);
-  StepRecord record;
+  SceneSimulation simulation(scene);
+  StepReport record;
   std::vector<Index> constraints;
   for (int k = 0; k < 15; ++k) {
     ASSERT_TRUE(simulation.step(record).ok());

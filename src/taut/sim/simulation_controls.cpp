@@ -1,0 +1,322 @@
+// What a program changes between the steps of a Simulation, and its snapshots.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "taut/base/checksum.h"
+#include "taut/sim/describe.h"
+#include "taut/sim/simulation.h"
+#include "taut/sim/validator.h"
+
+namespace taut {
+
+namespace {
+
+void check_count(const char* what, std::size_t found, std::size_t expected, const char* of) {
+  if (found == expected) return;
+  throw InputError(fmt::format("{}: {} found, one for each of the {} {} was expected", what, found,
+                               expected, of));
+}
+
+void check_finite(const char* what, std::span<const Vec3> list) {
+  for (std::size_t i = 0; i < list.size(); ++i)
+    if (!list[i].allFinite())
+      throw InputError(
+          fmt::format("{}: entry {} is ({}, {}, {}), three finite numbers were expected", what, i,
+                      list[i].x(), list[i].y(), list[i].z()));
+}
+
+void check_handle(const char* what, int index, std::size_t count) {
+  if (index >= 0 && static_cast<std::size_t>(index) < count) return;
+  throw InputError(
+      fmt::format("there is no {} of handle {}: this simulation has {}; use what add_cloth, pin or "
+                  "add_solid of "
+                  "its World returned",
+                  what, index, count));
+}
+
+template <class Describe>
+void judge(const std::string& path, Describe&& describe) {
+  Validator v;
+  v.inside(path, [&] { describe(v); });
+  v.finish();
+}
+
+std::uint64_t sum_of(const World& world) {
+  Checksum sum;
+  const auto add = [&](const TriangleMesh& mesh) {
+    sum.add_items(std::span<const Vec3>(mesh.positions));
+    sum.add_items(std::span<const Triangle>(mesh.triangles));
+  };
+  for (const ClothOptions& cloth : world.cloths()) {
+    add(cloth.mesh);
+    sum.add_items(std::span<const double>(cloth.masses));
+    const double numbers[] = {cloth.density, cloth.node_mass, cloth.drag, cloth.wind_pressure};
+    sum.add_items(std::span<const double>(numbers));
+    sum.add_items(std::span<const Index>(cloth.grid));
+  }
+  for (std::size_t s = 0; s < world.solids().size(); ++s) {
+    const Solid& solid = world.solids()[s];
+    const double numbers[] = {static_cast<double>(solid.shape), solid.radius, solid.height,
+                              solid.friction, solid.thickness};
+    sum.add_items(std::span<const double>(numbers));
+    sum.add_items(std::span<const Vec3>(&solid.size, 1));
+    add(world.surfaces()[s].mesh);
+  }
+  return sum.value();
+}
+
+}  // namespace
+
+const ClothPart& Simulation::checked(ClothHandle cloth) const {
+  check_handle("cloth", cloth.index, cloth_.parts().size());
+  return cloth_.parts()[static_cast<std::size_t>(cloth.index)];
+}
+
+PinnedNodes& Simulation::checked(PinHandle pin) {
+  check_handle("pin", pin.index, cloth_.pins().size());
+  return cloth_.pins()[static_cast<std::size_t>(pin.index)];
+}
+
+std::size_t Simulation::checked(SolidHandle solid) const {
+  check_handle("solid", solid.index, world_.solids().size());
+  return static_cast<std::size_t>(solid.index);
+}
+
+std::span<const Vec3> Simulation::part(ClothHandle cloth, const std::vector<Vec3>& field) const {
+  const ClothPart& p = checked(cloth);
+  return std::span(field).subspan(static_cast<std::size_t>(p.first_node),
+                                  static_cast<std::size_t>(p.node_count));
+}
+
+// ---- air, forces, material
+
+void Simulation::set_gravity(const Vec3& gravity) {
+  Vec3 copy = gravity;
+  judge("", [&](Validator& v) { describe_gravity(v, copy); });
+  world_.gravity = gravity;
+  stepper_->external().set_gravity(gravity);
+  if (surface_contact_) surface_contact_->set_gravity(gravity);
+}
+
+void Simulation::set_wind(const WindOptions& wind) {
+  WindOptions copy = wind;
+  judge("wind.", [&](Validator& v) { describe_wind(v, copy); });
+  world_.wind = wind;
+  stepper_->external().set_wind(wind);
+}
+
+void Simulation::set_material(ClothHandle cloth, const SpringMaterial& material) {
+  checked(cloth);
+  ClothOptions copy = world_.cloths()[static_cast<std::size_t>(cloth.index)];
+  copy.material = material;
+  judge(fmt::format("cloth.{}.", cloth.index), [&](Validator& v) {
+    describe_cloth_values(v, {copy.node_mass, copy.density, copy.material, copy.drag,
+                              copy.wind_pressure, copy.velocity, !copy.masses.empty()});
+  });
+  world_.set_material(cloth, material);
+  const bool splits = options_.integrator == IntegratorKind::imex_adaptive;
+  cloth_.make_springs(world_, splits ? clock_.longest : 0.0);
+  make_stepper();
+}
+
+void Simulation::set_velocities(ClothHandle cloth, std::span<const Vec3> v) {
+  const ClothPart& p = checked(cloth);
+  check_count("velocities", v.size(), static_cast<std::size_t>(p.node_count), "nodes");
+  check_finite("velocities", v);
+  std::ranges::copy(v, state_.v.begin() + p.first_node);
+  stepper_->start_afresh(state_);
+}
+
+void Simulation::set_forces(ClothHandle cloth, std::span<const Vec3> force) {
+  const ClothPart& p = checked(cloth);
+  check_count("forces", force.size(), static_cast<std::size_t>(p.node_count), "nodes");
+  check_finite("forces", force);
+  const auto before = stepper_->external().applied();
+  std::vector<Vec3> all(before.begin(), before.end());
+  all.resize(static_cast<std::size_t>(cloth_.nodes()), Vec3::Zero());
+  std::ranges::copy(force, all.begin() + p.first_node);
+  stepper_->external().set_applied(std::move(all));
+}
+
+// ---- pins
+
+void Simulation::move(PinHandle pin, const Vec3& displacement) {
+  PinnedNodes& pinned = checked(pin);
+  check_finite("displacement", {&displacement, 1});
+  std::vector<Vec3> places = pinned.start;
+  for (Vec3& x : places) x += displacement;
+  pinned.move_to(std::move(places), state_.time);
+}
+
+void Simulation::place(PinHandle pin, std::span<const Vec3> places) {
+  PinnedNodes& pinned = checked(pin);
+  check_count("places", places.size(), pinned.nodes.size(), "pinned nodes");
+  check_finite("places", places);
+  pinned.move_to({places.begin(), places.end()}, state_.time);
+}
+
+void Simulation::release(PinHandle pin) { checked(pin).held = false; }
+
+void Simulation::hold(PinHandle pin) {
+  PinnedNodes& pinned = checked(pin);
+  PinnedNodes anew;
+  anew.nodes = pinned.nodes;
+  for (const Index node : anew.nodes) anew.start.push_back(state_.x[node]);
+  pinned = std::move(anew);
+}
+
+PinHandle Simulation::pin(ClothHandle cloth, std::vector<Index> nodes) {
+  const ClothPart& p = checked(cloth);
+  PinnedNodes pinned;
+  if (nodes.empty()) throw InputError("pin: no nodes given; name at least one, from 0");
+  for (const Index node : nodes) {
+    if (node < 0 || node >= p.node_count)
+      throw InputError(fmt::format(
+          "pin: it holds node {}, but the nodes of cloth '{}' are 0 to {}; name nodes from 0", node,
+          p.name, p.node_count - 1));
+    pinned.nodes.push_back(p.first_node + node);
+    pinned.start.push_back(state_.x[p.first_node + node]);
+  }
+  cloth_.pins().push_back(std::move(pinned));
+  return {static_cast<int>(cloth_.pins().size()) - 1};
+}
+
+// ---- solids
+
+void Simulation::move(SolidHandle solid, const Pose& pose) {
+  const std::size_t k = checked(solid);
+  Pose copy = pose;
+  judge(fmt::format("solid.{}.", k), [&](Validator& v) { describe_pose(v, copy, true, ""); });
+  solid_targets_[k] = pose;
+  awaits_step_[k] = 1;
+}
+
+MeshSolid& Simulation::mesh_solid(std::size_t solid) {
+  std::size_t mesh = 0;
+  for (std::size_t k = 0; k < solid; ++k)
+    mesh += world_.solids()[k].shape == SolidShape::mesh ? 1u : 0u;
+  return surface_contact_->solids()[mesh];
+}
+
+void Simulation::deform(SolidHandle solid, std::span<const Vec3> shape) {
+  const std::size_t k = checked(solid);
+  if (world_.solids()[k].shape != SolidShape::mesh)
+    throw InputError(
+        fmt::format("solid '{}' is no mesh: only a mesh can be deformed", world_.solids()[k].name));
+  check_count("shape", shape.size(), static_cast<std::size_t>(mesh_solid(k).vertices()),
+              "vertices");
+  check_finite("shape", shape);
+  shape_targets_[k].assign(shape.begin(), shape.end());
+}
+
+void Simulation::set_solid(std::size_t solid) {
+  const Solid& s = world_.solids()[solid];
+  for (std::size_t k = 0; k < variant_of_.size(); ++k)
+    if (variant_of_[k] == static_cast<int>(solid)) {
+      Solid variant = contact_.solids()[k];  // its thickness and friction are its own
+      variant.key_frames = s.key_frames;
+      variant.initial = s.initial;
+      variant.velocity = s.velocity;
+      variant.angular_velocity = s.angular_velocity;
+      contact_.set_solid(k, variant);
+    }
+  if (s.shape == SolidShape::mesh) mesh_solid(solid).set_motion(s);
+}
+
+// What waits for a step goes from where it is to its target within this one.
+void Simulation::begin_moves(double h) {
+  const double now = state_.time;
+  for (PinnedNodes& pin : cloth_.pins()) pin.begin_step(now, h);
+  for (std::size_t k = 0; k < awaits_step_.size(); ++k) {
+    if (awaits_step_[k]) {
+      Solid moved = world_.solids()[k];
+      moved.key_frames = {{now, moved.pose(now)}, {now + h, solid_targets_[k]}};
+      world_.set_motion({static_cast<int>(k)}, moved);
+      set_solid(k);
+    }
+    if (!shape_targets_[k].empty()) mesh_solid(k).deform(shape_targets_[k], now, now + h);
+  }
+}
+
+void Simulation::end_moves() {
+  for (PinnedNodes& pin : cloth_.pins()) pin.end_step();
+  std::ranges::fill(awaits_step_, 0);
+  for (auto& shape : shape_targets_) shape.clear();
+}
+
+// ---- snapshots
+
+Snapshot Simulation::save() const {
+  Snapshot s;
+  s.world = sum_of(world_);
+  s.clock = clock_;
+  s.state = state_;
+  s.contacts = contact_.state();
+  if (surface_contact_) s.surface_contact = surface_contact_->state();
+  s.solver_memory = stepper_->solver().memory();
+  s.gravity = world_.gravity;
+  s.wind = world_.wind;
+  const auto applied = stepper_->external().applied();
+  s.applied.assign(applied.begin(), applied.end());
+  for (const ClothOptions& cloth : world_.cloths()) s.materials.push_back(cloth.material);
+  s.pins.assign(cloth_.pins().begin(), cloth_.pins().end());
+  s.solids.assign(world_.solids().begin(), world_.solids().end());
+  s.solid_targets = solid_targets_;
+  s.awaits_step = awaits_step_;
+  if (surface_contact_)
+    for (const MeshSolid& solid : std::as_const(*surface_contact_).solids())
+      s.deformations.push_back(solid.deformation());
+  s.shape_targets = shape_targets_;
+  return s;
+}
+
+void Simulation::load(const Snapshot& s) {
+  const std::size_t solids = world_.solids().size(),
+                    meshes = surface_contact_ ? surface_contact_->solids().size() : 0;
+  if (s.world != sum_of(world_) || s.state.x.size() != static_cast<std::size_t>(cloth_.nodes()) ||
+      s.materials.size() != world_.cloths().size() || s.solids.size() != solids ||
+      s.solid_targets.size() != solids || s.awaits_step.size() != solids ||
+      s.shape_targets.size() != solids || s.deformations.size() != meshes)
+    throw InputError(
+        "the snapshot belongs to another world: load it into a simulation of the same meshes, "
+        "masses and solids");
+  bool other_material = false;
+  for (std::size_t c = 0; c < s.materials.size(); ++c) {
+    other_material = other_material || !(s.materials[c] == world_.cloths()[c].material);
+    world_.set_material({static_cast<int>(c)}, s.materials[c]);
+  }
+  // An adaptive split, too, is of the longest step so far.
+  const bool splits =
+      options_.integrator == IntegratorKind::imex_adaptive && s.clock.longest != clock_.longest;
+  if (other_material || splits) {
+    const bool adaptive = options_.integrator == IntegratorKind::imex_adaptive;
+    cloth_.make_springs(world_, adaptive ? s.clock.longest : 0.0);
+    clock_.longest = s.clock.longest;
+    make_stepper();
+  } else if (s.clock.longest > 0.0 && s.clock.longest != clock_.longest) {
+    stepper_->choose_core(s.clock.longest);
+  }
+  clock_ = s.clock;
+  state_ = s.state;
+  stepper_->solver().restore_memory(s.solver_memory);
+  contact_.restore(s.contacts);
+  if (surface_contact_) surface_contact_->restore(s.surface_contact);
+  set_gravity(s.gravity);
+  set_wind(s.wind);
+  stepper_->external().set_applied(s.applied);
+  cloth_.pins() = s.pins;
+  solid_targets_ = s.solid_targets;
+  awaits_step_ = s.awaits_step;
+  shape_targets_ = s.shape_targets;
+  std::size_t mesh = 0;
+  for (std::size_t k = 0; k < solids; ++k) {
+    world_.set_motion({static_cast<int>(k)}, s.solids[k]);
+    set_solid(k);
+    if (world_.solids()[k].shape == SolidShape::mesh && surface_contact_)
+      surface_contact_->solids()[mesh].set_deformation(s.deformations[mesh]), ++mesh;
+  }
+}
+
+}  // namespace taut
