@@ -79,6 +79,20 @@ TEST(ContactSet, stickingNodeEndsWhereItsSolidCarriesIt) {
   EXPECT_LT((constraints.displacement(0) - h * floor.velocity).norm(), 1e-15);
 }
 
+// Its other contacts have the planes of where it ends, not of where the last pass took it.
+TEST(ContactSet, otherPlanesOfStickingNodeAreThoseAtItsTarget) {
+  Nodes nodes({Vec3::Zero()});
+  ContactSet set = set_of({plane(Vec3::UnitZ(), 0.3), sphere(1.0, 0.0, Vec3::UnitX())}, 1);
+  nodes.begin(set);
+  ASSERT_EQ(pairs(set), (Pairs{{0, 0}, {0, 1}}));
+  TouchedNode& touched = set.touched()[0];
+  touched.friction.begin(set.slips(touched, nodes.end[0]), 0.0);
+  ASSERT_TRUE(touched.friction.sticks());
+  set.renew_planes(std::vector<Vec3>{Vec3(0.0, 0.1, 0.0)});
+  EXPECT_LT((set.contacts()[1].normal + Vec3::UnitX()).norm(), 1e-15);
+  EXPECT_NEAR(set.contacts()[1].distance, 0.0, 1e-15);
+}
+
 TEST(ContactSet, pinsAndForbiddenPairsKeepNodesOut) {
   Nodes nodes({Vec3::Zero(), Vec3::Zero(), Vec3::Zero()});
   for (Vec3& x : nodes.end) x.z() = -0.01;

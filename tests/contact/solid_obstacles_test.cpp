@@ -27,12 +27,14 @@ TEST(SolidObstacles, firstOneInTheWayAndItsPlane) {
 }
 
 TEST(SolidObstacles, moveOutGoesToTheSurfaceOfEach) {
-  SolidObstacles obstacles({plane(Vec3::UnitZ()), plane(Vec3::UnitX())}, 1, touch);
-  obstacles.begin_step(0.0, h, std::vector<Vec3>{Vec3(1, 1, 1)});
-  Vec3 x(-0.2, 0.5, -0.1);
-  EXPECT_NEAR(obstacles.move_out(0, x).value(), 0.2, 1e-15);
-  EXPECT_LT((x - Vec3(0, 0.5, 0)).norm(), 1e-15);
-  EXPECT_FALSE(obstacles.move_out(0, x));
+  for (const Vec3& inside : {Vec3(-0.2, 0.5, -0.1), Vec3(-0.1, 0.5, -0.2)}) {
+    SolidObstacles obstacles({plane(Vec3::UnitZ()), plane(Vec3::UnitX())}, 1, touch);
+    obstacles.begin_step(0.0, h, std::vector<Vec3>{Vec3(1, 1, 1)});
+    Vec3 x = inside;
+    EXPECT_NEAR(obstacles.move_out(0, x).value(), 0.2, 1e-15);  // the deeper of the two
+    EXPECT_LT((x - Vec3(0, 0.5, 0)).norm(), 1e-15);
+    EXPECT_FALSE(obstacles.move_out(0, x));
+  }
 }
 
 TEST(SolidObstacles, motionChangesFromTheNextStepOn) {
