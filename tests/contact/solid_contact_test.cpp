@@ -175,6 +175,36 @@ TEST(MovingFloor, touchingWithoutForceStays) {
   EXPECT_EQ(masses.most_passes, 1);
 }
 
+// A floor that is given a new velocity between steps does as one whose key frames say so.
+TEST(MovingFloor, motionSetBetweenStepsDoesAsKeyFrames) {
+  const Vec3 velocities[3] = {Vec3(0.3, 0.0, 0.1), Vec3(-0.5, 0.2, 0.2), Vec3(0.0, 0.0, -0.05)};
+  const int steps = 80;
+  Solid keyed = test::plane(Vec3::UnitZ(), 0.4);
+  keyed.key_frames = {{0.0, keyed.initial}};
+  for (const Vec3& velocity : velocities) {
+    KeyFrame next = keyed.key_frames.back();
+    next.time += steps * h;
+    next.pose.translation += steps * h * velocity;
+    keyed.key_frames.push_back(next);
+  }
+  PointMasses one({Vec3(0.1, 0.2, 0.0)}), other = one;
+  SolidContact by_frames = contact_with({keyed}),
+               by_hand = contact_with({test::plane(Vec3::UnitZ(), 0.4)});
+  for (int k = 0; k < 3; ++k) {
+    Solid floor = test::plane(Vec3::UnitZ());
+    floor.velocity = velocities[k];
+    floor.initial.translation =
+        keyed.key_frames[k].pose.translation - keyed.key_frames[k].time * velocities[k];
+    by_hand.set_solid(0, floor);
+    one.run(by_frames, h, steps);
+    other.run(by_hand, h, steps);
+    ASSERT_LT((one.x[0] - other.x[0]).norm(), 1e-12);
+    ASSERT_LT((one.v[0] - other.v[0]).norm(), 1e-12);
+    // Friction of the floor that was there at first has made the node as fast as the floor.
+    ASSERT_LT((other.v[0] - velocities[k]).norm(), 1e-10);
+  }
+}
+
 TEST(RotatingSphere, frictionCarriesNodeRoundItsCircle) {
   const double R = 0.2, omega = 2.0;
   Solid ball = test::sphere(R, 10.0, Vec3(0.3, -0.1, 0.5));

@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "taut/contact/pair_search.h"
-#include "taut/contact/solid_contact.h"
+#include "taut/contact/solid_obstacles.h"
 
 namespace taut {
 
