@@ -1,14 +1,14 @@
 #pragma once
 // One step: assemble -> constrain -> solve -> update. Contact may ask for several solves of the
-// same assembled system with other constraints and impulses (passes); the loop in scene/ joins the
-// two.
+// same assembled system with other constraints and impulses (passes); the loop in sim/simulation.h
+// joins the two.
 //
-//   begin(state, h)              A and b, once
-//   solve(constraints, impulses) the unknown, the end positions and velocities, the constraint
-//   impulses; may be repeated. One linear solve, or
-//                                with a nonlinear integrator as many as Newton's method takes
-//   commit(state)                takes the last solve's end state over
-//   correct(state, x, h)         takes positions over that contact has corrected since
+//   begin(state, h)               A and b, once
+//   solve(constraints, impulses)  the unknown, the end positions and velocities, the constraint
+//                                 impulses; may be repeated. One linear solve, or with a nonlinear
+//                                 integrator as many as Newton's method takes
+//   commit(state)                 takes the last solve's end state over
+//   correct(state, x, h)          takes positions over that contact has corrected since
 //
 // Constraint impulse (N s, on each node): j = (I - S)(A u - b), scaled to an impulse
 // (docs/mathematics.md, 3.6). A positive n·j pushes along n.
