@@ -1,29 +1,17 @@
 #pragma once
 // What keeps cloth from passing through itself, other cloths and solids' meshes: corrects the
 // positions at the end of a step so that no pair of the surface meets on the way, or says that it
-// cannot (docs/mathematics.md, 7; Bridson, Fedkiw & Anderson 2002; paper Section 7).
+// cannot (docs/mathematics.md, 7; docs/design/cloth-contact.md; Bridson, Fedkiw & Anderson 2002).
 //
 //   x0            m, positions at the start, without intersections
 //   x1            m, where the dynamics would end; changed in place
 //   thickness     m: how far apart layers keep when they can
-//   separation    m: how far apart they surely stay: continuous detection reports whatever comes
-//                 nearer
+//   separation    m: how far apart they surely stay
 //
-//   1  repulsion  pairs nearer than their thickness at x0 must not come nearer, and go a fifth of
-//                 what is missing apart (repulsion.h); they begin with what pushed them in the step
-//                 before (pair_forces.h)
-//   2  impulses   pairs that collide on the way end apart on the side where they were, with Coulomb
-//                 friction (impulses.h); repeated for the pairs of moved nodes until none collides,
-//                 at most `sweeps` times. Nodes stay out of analytic solids likewise
-//   3  zones      what still collides moves as rigid bodies, merged as they grow, until nothing
-//                 collides (rigid_zones.h)
-//
-// A pair is searched again whenever one of its nodes has moved, so that at the end every pair has
-// been proved free on its final way, or lies in one zone, inside which nothing can meet.
-//
-// The average velocities (x1 - x0)/h keep their linear and angular momentum (angular_momentum.h),
-// but for what pins and solids take and for zones counted as inexact. Deterministic: the same bits
-// for any number of threads. One step at a time.
+// Repulsion, then impulses, then rigid zones. At the end every pair has been proved free on its
+// final way, or lies in one zone, inside which nothing can meet. The average velocities (x1 - x0)/h
+// keep their linear and angular momentum, but for what pins and solids take and for zones counted
+// as inexact. Deterministic: the same bits for any number of threads. One step at a time.
 
 #include <memory>
 #include <string>

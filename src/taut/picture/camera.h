@@ -1,8 +1,7 @@
 #pragma once
 // A pinhole camera and its automatic framing.
 //
-//   image plane   pixel (x, y) of a width x height picture, (0, 0) the top left corner of the
-//                 picture, y downwards
+//   image plane   pixel (x, y) of a width x height picture, (0, 0) the top left corner, y downwards
 //   eye, target   m: where the camera is, and the point in the middle of the picture
 //   up            no unit: the direction that points upwards in the picture, not along target - eye
 //   fov           degrees: the full vertical angle of view

@@ -1,9 +1,9 @@
 #pragma once
-// The planes of contact/ccd.h, for one pair: see there for why they miss nothing.
+// The planes of contact/ccd.h, for one pair: docs/mathematics.md, 6, says why they miss nothing.
 //
-//   D_k(t) = (1 - t) D_k^0 + t D_k^1, k = 0 ... 3     differences of corners of the two shapes, m;
-//                                                     a vertex and a triangle have three: the last
-//                                                     is given twice
+//   D_k(t) = (1 - t) D_k^0 + t D_k^1, k = 0 ... 3   differences of corners of the two shapes, m; a
+//                                                   vertex and a triangle have three: the last is
+//                                                   given twice
 //
 // Four lanes side by side, one a difference. Private to contact.
 
