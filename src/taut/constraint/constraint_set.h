@@ -31,8 +31,8 @@ constexpr double parallel_tolerance = 1e-3;
 // preconditioners that are not block-wise see a difference.
 enum class FrameChoice {
   duff,  // Duff et al. 2017, "Building an orthonormal basis, revisited": no bad direction
-  // the paper's closed form, its "otherwise" case repaired; loses digits near |p1| = 1, exact at
-  // both poles
+  // the paper's closed form, its "otherwise" case repaired; loses digits near |p1| = 1, exact
+  // at both poles
   paper_eq13
 };
 

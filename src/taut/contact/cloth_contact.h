@@ -74,8 +74,8 @@ class ClothContact {
   ClothContact(CollisionSurface surface, std::vector<CollisionBody> bodies,
                std::span<const Vec3> start, std::vector<double> mass, ContactOptions options);
 
-  // On failure x1 is not to be used, and the message says which nodes, cloths and solids cannot be
-  // kept apart.
+  // On failure x1 is not to be used, and the message says which nodes, cloths and
+  // solids cannot be kept apart.
   Status resolve(const ClothContactStep& step, std::span<Vec3> x1);
 
   const CollisionSurface& surface() const { return *surface_; }
@@ -87,8 +87,8 @@ class ClothContact {
   const ZoneState& zone_state() const { return zones_; }
   // Of the last resolve: what pushed the pairs, ascending by their first vertex.
   const std::vector<PairForce>& forces() const { return forces_; }
-  // Of the last resolve, one a vertex: who pushed it at the end, cloth (touched_cloth) or a solid
-  // (touched_solid).
+  // Of the last resolve, one a vertex: who pushed it at the end, cloth (touched_cloth) or
+  // a solid (touched_solid).
   std::span<const std::uint8_t> touched() const { return touched_; }
   // After a failure: the nodes that the message is about.
   const std::vector<Index>& trouble() const { return trouble_; }
@@ -130,8 +130,8 @@ class ClothContact {
   std::vector<Index> trouble_;
 };
 
-// A tenth of the mean edge, at most 1 mm: less than what folding cloth can give way, more than
-// rounding. m.
+// A tenth of the mean edge, at most 1 mm: less than what folding cloth can give
+// way, more than rounding. m.
 double default_thickness(const CollisionSurface& surface, std::span<const Vec3> rest);
 
 }  // namespace taut

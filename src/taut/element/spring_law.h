@@ -63,8 +63,8 @@ struct SpringResponse {
   Mat3 dropped_damping = Mat3::Zero();     // -d(damping force)/dx, dropped
   Mat3 exact_stiffness() const { return stiffness + dropped_transverse + dropped_damping; }
 };
-// The readable form, for tests, dumps and small tools; springs.cpp evaluates the same formulas in
-// bulk.
+// The readable form, for tests, dumps and small tools; element/spring_model.cpp evaluates
+// the same formulas in bulk.
 SpringResponse spring_response(SpringLawKind law, const SpringParameters& p, const Vec3& d,
                                const Vec3& relative_velocity);
 

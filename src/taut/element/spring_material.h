@@ -1,6 +1,6 @@
 #pragma once
-// Material of a mass-spring cloth (Provot 1995; Choi & Ko 2002). docs/mathematics.md, 2; kernels in
-// element/spring_law.h.
+// Material of a mass-spring cloth (Provot 1995; Choi & Ko 2002). docs/mathematics.md, 2; kernels
+// in element/spring_law.h.
 //
 //   k_stretch, k_shear  N/m a spring
 //   k_bend              bend_model linear: N/m a spring; choi_ko: N·m², a flexural rigidity

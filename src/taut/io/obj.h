@@ -28,9 +28,9 @@ TriangleMesh read_obj(const std::filesystem::path& path, std::vector<std::string
 TriangleMesh parse_obj(const std::string& file, std::string_view text,
                        std::vector<std::string>* notes = nullptr);
 
-// `v` with the shortest decimals that read back to the same doubles, or floats, `vt` likewise when
-// there are any, `f` counted from 1. Through a temporary file; throws InputError when that cannot
-// be written.
+// `v` with the shortest decimals that read back to the same doubles, or floats, `vt`
+// likewise when there are any, `f` counted from 1. Through a temporary file; throws
+// InputError when that cannot be written.
 enum class ObjDigits { of_double, of_float };
 void write_obj(const std::filesystem::path& path, const TriangleMesh& mesh,
                ObjDigits digits = ObjDigits::of_double);

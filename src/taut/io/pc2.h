@@ -1,7 +1,7 @@
 #pragma once
-// PC2 point caches: the positions of a mesh's vertices over time, for Blender, Maya, Houdini and
-// others; the mesh itself goes into an OBJ. Source: the 3ds Max PC2 format as Blender's Mesh Cache
-// reads it.
+// PC2 point caches: the positions of a mesh's vertices over time, for Blender, Maya,
+// Houdini and others; the mesh itself goes into an OBJ. Source: the 3ds Max PC2 format as
+// Blender's Mesh Cache reads it.
 //
 //   header        32 bytes, little-endian: "POINTCACHE2\0", int32 version = 1, int32 points, float
 //                 start_frame, float sample_rate, int32 samples

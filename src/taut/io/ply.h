@@ -1,6 +1,6 @@
 #pragma once
-// PLY meshes ("Stanford" polygon files), text and binary (G. Turk, "The PLY Polygon File Format",
-// 1994).
+// PLY meshes ("Stanford" polygon files), text and binary (G. Turk, "The PLY
+// Polygon File Format", 1994).
 //
 //   vertex   x, y, z of any numeric type; texture coordinates s, t or u, v or texture_u, texture_v
 //   face     a list vertex_indices or vertex_index; polygons are cut into fans (io/polygon_fan.h)

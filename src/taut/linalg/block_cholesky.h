@@ -21,8 +21,8 @@
 
 namespace taut {
 
-// Of the pattern's blocks that the mask leaves out: all of them, or only those without a place in
-// the factor.
+// Of the pattern's blocks that the mask leaves out: all of them, or only those
+// without a place in the factor.
 enum class BlocksLeftOut { all_outside_mask, without_place };
 
 // What becomes of blocks of A that are not factorised.
@@ -31,8 +31,8 @@ struct BlocksOutside {
   // takes the springs out that made them, where else their part of the diagonal would stay. For
   // symmetric 3x3 blocks.
   bool lumped = false;
-  // With lumped: those that BlockCholesky::parallelograms() has are replaced after that, by B =
-  // -A_ac on the sides and -B on the other diagonal.
+  // With lumped: those that BlockCholesky::parallelograms() has are replaced after that, by
+  // B = -A_ac on the sides and -B on the other diagonal.
   bool replaced = false;
   RowsVisitor visit = {};  // sees all rows of A, once
   SideTasks beside = {};   // done during the factorisation, after that, where threads would be idle

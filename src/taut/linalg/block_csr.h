@@ -11,8 +11,8 @@
 //
 //   A(i, column[k]) [r][c] = values[value_start[i] + r * width(i) + block_offset[k] + c]
 //
-// so a product needs one gather of x and dim(i) straight dot products per row, whatever the dims
-// are.
+// so a product needs one gather of x and dim(i) straight dot products per
+// row, whatever the dims are.
 
 #include <functional>
 #include <memory>
@@ -50,8 +50,8 @@ struct BlockPattern {
   Offset bytes() const;
 };
 
-// Pattern from lists of columns, sorted and unique; the diagonal is added where missing. dims[i] =
-// unknowns of node i. Asserts that columns are in range.
+// Pattern from lists of columns, sorted and unique; the diagonal is added where missing.
+// dims[i]: unknowns of node i. Asserts that columns are in range.
 std::shared_ptr<const BlockPattern> make_pattern(std::vector<std::vector<Index>> columns,
                                                  std::span<const Index> dims);
 std::shared_ptr<const BlockPattern> make_pattern(std::vector<std::vector<Index>> columns,

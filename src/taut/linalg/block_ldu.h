@@ -27,8 +27,8 @@ class BlockLdu {
 
   const TriangularLayout& layout() const { return layout_; }
   Index block_size() const { return layout_.block * layout_.block; }
-  // The values, block after block in the layout's order, each row-major: to be filled by whoever
-  // factorises.
+  // The values, block after block in the layout's order, each row-major: to be
+  // filled by whoever factorises.
   double* lower(Index k) { return &lower_[static_cast<std::size_t>(k) * block_size()]; }
   double* upper(Index k) { return &upper_[static_cast<std::size_t>(k) * block_size()]; }
   double* inverse_diagonal(Index place) {

@@ -15,8 +15,8 @@
 
 namespace taut {
 
-// Calls f(node) for the nodes whose dim is not 3, in order: mostly few. Eight nodes are looked at
-// at once.
+// Calls f(node) for the nodes whose dim is not 3, in order: mostly few. Eight
+// nodes are looked at at once.
 template <class Function>
 void for_each_projected(std::span<const std::int8_t> dim, Function&& f) {
   constexpr std::uint64_t all_three = 0x0303030303030303;

@@ -39,8 +39,8 @@ struct TriangularLayout {
 
 TriangularLayout triangular_layout(std::shared_ptr<const BlockPattern> pattern, bool with_upper);
 
-// Block k of A's row i as block x block row-major numbers, padded with zeros; on the diagonal with
-// ones.
+// Block k of A's row i as block x block row-major numbers, padded with zeros;
+// on the diagonal with ones.
 void load_padded(const BlockCsr& a, Index i, Index k, Index block, double* out);
 
 }  // namespace taut

@@ -52,8 +52,8 @@ Topology build_topology(const TriangleMesh& mesh);
 
 // Area of a triangle, m^2.
 double triangle_area(const TriangleMesh& mesh, Index triangle);
-// Each vertex's share of the surface: a third of each of its triangles, m^2. The sum is the mesh's
-// area.
+// Each vertex's share of the surface: a third of each of its triangles, m^2.
+// The sum is the mesh's area.
 std::vector<double> vertex_areas(const TriangleMesh& mesh);
 
 // What a mesh must not have if it is to be cloth. Empty lists: nothing found.

@@ -49,8 +49,8 @@ class Stepper {
   // moved over h (s), and a multistep method starts afresh.
   void correct(State& state, std::span<const Vec3> corrected, double h) const;
   double h() const { return h_; }
-  // The next step is of another size than the last: a multistep method must not use the step
-  // before.
+  // The next step is of another size than the last: a multistep method must
+  // not use the step before.
   void start_afresh(State& state) const;
 
   // The system of the last begin/solve, for dumps, benches and other solvers; of several

@@ -24,8 +24,8 @@ class SeparatingPlanes {
   using Lanes = double __attribute__((vector_size(32)));
 
  public:
-  // Of a vertex p and a triangle a b c; of two edges a b and c d. x: the corners at one end of the
-  // time.
+  // Of a vertex p and a triangle a b c; of two edges a b and c d. x: the
+  // corners at one end of the time.
   struct VertexTriangle {};
   struct EdgeEdge {};
   TAUT_ALWAYS_INLINE SeparatingPlanes(VertexTriangle, const Vec3* const (&x0)[4],

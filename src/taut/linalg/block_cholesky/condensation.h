@@ -23,8 +23,8 @@ namespace taut {
 struct CondensedGraph {
   AnalyzedGraph all;
   std::vector<Index> condensed;  // nodes of that graph
-  // of the others, in the same order, with a block wherever one arises. A value of -1: A has none
-  // there
+  // of the others, in the same order, with a block wherever one arises. A
+  // value of -1: A has none there
   AnalyzedGraph rest;
 };
 

@@ -80,9 +80,8 @@ struct FactorLayout {
   // per block: its first column in the row of the analysed matrix; -1: it has none there
   std::vector<Index> row_value;
   std::vector<Offset> row_to;  // per row: gathered_start of its node; -1 without unknowns
-  // Where nodes are condensed, and then a gathered block e begins at 9 e:
-  // per block of condensed nodes: where the other node begins in the vector of the front that takes
-  // it in
+  // Where nodes are condensed, and then a gathered block e begins at 9 e: per block of condensed
+  // nodes: where the other node begins in the vector of the front that takes it in
   std::vector<Index> condensed_row;
   std::vector<Index> pair_start;    // per block, into pair; blocks + 1
   std::vector<CondensedPair> pair;  // first: at the node that has the block

@@ -1,7 +1,7 @@
 #pragma once
-// The dense arithmetic inside one front, compiled once per instruction set. A front is the lower
-// triangle of a symmetric matrix of `rows` rows whose first `columns` columns (pivots) are
-// eliminated:
+// The dense arithmetic inside one front, compiled once per instruction set. A front is the
+// lower triangle of a symmetric matrix of `rows` rows whose first `columns` columns
+// (pivots) are eliminated:
 //
 //   L11 L11ᵀ = F11    L21 = F21 L11⁻ᵀ    U = -L21 L21ᵀ, to be added to the parent's front
 //
@@ -66,15 +66,15 @@ struct FrontShape {
 // How the rows of a child's front lie in its parent's. Both are in the order of elimination, so
 // what a SIMD register of the parent's rows takes are consecutive rows of the child.
 //
-// `count` rows from `from` on are the parent's from `to` on, within either its pivots or its other
-// rows.
+// `count` rows from `from` on are the parent's from `to` on, within either its
+// pivots or its other rows.
 struct RowRun {
   std::int32_t from = 0, to = 0, count = 0;
 };
 
-// The parent's rows to ... to+lanes-1: row to+i is the child's row from+lane[i], or none of its
-// rows where lane[i] < 0. `from` and `to` are multiples of the register's lanes, and lane[i] < 2
-// lanes.
+// The parent's rows to ... to+lanes-1: row to+i is the child's row from+lane[i], or
+// none of its rows where lane[i] < 0. `from` and `to` are multiples of the register's
+// lanes, and lane[i] < 2 lanes.
 struct RowSpread {
   static constexpr std::int32_t most_lanes = 16;
   std::int32_t from = 0, to = 0, last = 0;  // last: the last of the child's rows here

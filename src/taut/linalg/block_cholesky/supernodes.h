@@ -1,9 +1,9 @@
 #pragma once
 // Supernodes: runs of nodes that are eliminated together as one dense front, and the tree they form
 // (Liu 1992, SIAM Review 34, the multifrontal method). How they are chosen:
-// docs/design/block-cholesky.md. All of it is about nodes; weight[i] = unknowns of node i, at least
-// 1.
+// docs/design/block-cholesky.md. All of it is about nodes.
 //
+//   weight[i]           unknowns of node i, at least 1
 //   order[k]            the node eliminated as the k-th
 //   supernode s         the nodes order[first[s]] ... order[first[s+1]-1]; subtrees are numbered in
 //                       one piece
