@@ -94,6 +94,14 @@ class Checker:
                 self.report(self.rooms_file, 1,
                             f"src/taut/{folder.name} is not declared here with taut_room(...)")
 
+    def check_rooms_page(self):
+        """The table of docs/architecture.md has a row for each room."""
+        page = self.root / "docs/architecture.md"
+        text = page.read_text(encoding="utf-8") if page.is_file() else ""
+        for name in self.rooms:
+            if f"\n| `{name}` | " not in text:
+                self.report(page, 1, f"the table of rooms has no row for {name}")
+
     def find(self, path, target):
         """The project's file that an include names, or None.
 
@@ -224,6 +232,7 @@ class Checker:
 
     def run(self):
         self.check_room_lists()
+        self.check_rooms_page()
         self.check_includes()
         self.check_files()
         self.check_tests_mirror_rooms()

@@ -104,6 +104,11 @@ class PlantedMistakes(unittest.TestCase):
         self.append("src/taut/utils/all.h", "#pragma once")
         self.expect("src/taut/CMakeLists.txt:1", "src/taut/utils is not declared")
 
+    def test_room_that_the_page_leaves_out(self):
+        page = self.root / "docs/architecture.md"
+        page.write_text(page.read_text().replace("| `mesh` |", "| `meshes` |"))
+        self.expect("docs/architecture.md:1", "no row for mesh")
+
     def test_long_file(self):
         self.append("src/taut/base/long.cpp", "\n" * MAX_LINES)
         self.expect(f"src/taut/base/long.cpp:{MAX_LINES + 1}", f"{MAX_LINES + 1} lines")
