@@ -40,8 +40,13 @@ def is_code_block(lines):
 
 
 def long_lines_of_prose(lines):
-    """Markdown: tables, headings, code and what has no blank to break at may be longer."""
+    """Markdown: tables, headings, code and what has no blank to break at may be longer.
+
+    So may a page that a program has written, and says so.
+    """
     result = []
+    if any(line.startswith("<!-- Generated") for line in lines[:5]):
+        return result
     for number, (line, is_code) in enumerate(zip(lines, is_code_block(lines)), 1):
         text = re.sub(r"^\s*([-*]|\d+[.)])?\s*", "", line)
         breakable = " " in text[:MAX_COLUMNS - (len(line) - len(text)) + 1]
