@@ -1,6 +1,7 @@
-# Precompiled headers: they save a third of the time. The release build has them for tests only, so that a source that forgets an include does not
-# compile.
-#   taut_precompile(TARGET FAMILY HEADERS...)   the first target of a family compiles the headers, the others reuse them
+# Precompiled headers: they save a third of the time. The release build has them for tests only, so
+# that a source that forgets an include does not compile.
+#   taut_precompile(TARGET FAMILY HEADERS...)   the first target of a family compiles the headers,
+#                                               the others reuse them
 function(taut_precompile target family)
   if(NOT TAUT_SANITIZE AND NOT family STREQUAL tests)
     return()

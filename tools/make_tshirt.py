@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
-"""Writes scenes/meshes/tshirt.obj: a T-shirt of two layers, sewn together at the sides, the shoulders and along the sleeves, open at the neck,
-the hem and the cuffs. Lengths in m; it lies in the plane z = 0, the front above, the neck towards +y.
+"""Writes scenes/meshes/tshirt.obj: a T-shirt of two layers.
+
+They are sewn together at the sides, the shoulders and along the sleeves, open at the neck, the hem
+and the cuffs. Lengths in m; it lies in the plane z = 0, the front above, the neck towards +y.
 
     tools/make_tshirt.py [FILE]
 """
@@ -12,7 +14,8 @@ CELL = 0.0168              # m, between nodes
 BODY, HEIGHT = 28, 38      # cells: across the chest, hem to shoulder
 SLEEVE, CUFF = 12, 12      # cells: length and width of a sleeve
 NECK = 5                   # cells from the middle to where the shoulder seam begins
-FULL, SLOPE = 0.03, 0.4    # m: half the greatest distance of the layers, and how fast they part from a seam
+# m: half the greatest distance of the layers, and how fast they part from a seam
+FULL, SLOPE = 0.03, 0.4
 
 
 def cells():
@@ -30,7 +33,8 @@ def is_open(i: int, j: int) -> bool:
 
 
 def main() -> None:
-    nodes = sorted({(i + a, j + b) for i, j in cells() for a in (0, 1) for b in (0, 1)}, key=lambda n: (n[1], n[0]))
+    corners = {(i + a, j + b) for i, j in cells() for a in (0, 1) for b in (0, 1)}
+    nodes = sorted(corners, key=lambda n: (n[1], n[0]))
     filled = set(cells())
     around = {n: sum((n[0] - a, n[1] - b) in filled for a in (0, 1) for b in (0, 1)) for n in nodes}
     seam = {n for n in nodes if around[n] < 4 and not is_open(*n)}
@@ -42,7 +46,8 @@ def main() -> None:
             if n in around and n not in distance:
                 distance[n] = distance[i, j] + 1
                 queue.append(n)
-    lines = ["# T-shirt, made by tools/make_tshirt.py: m, the front above z = 0, open at neck (+y), hem and cuffs"]
+    lines = ["# T-shirt, made by tools/make_tshirt.py: m, the front above z = 0, open at neck "
+             "(+y), hem and cuffs"]
     texture, faces, index = [], [], {}
     for side in (1, -1):
         for n in nodes:

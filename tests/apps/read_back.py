@@ -1,9 +1,12 @@
 #!/usr/bin/env python3
-"""Runs a small scene, exports it, and reads the files back with other people's libraries: the numbers must be those of frames/*.npy.
+"""Runs a small scene, exports it, and reads the files back with other people's libraries.
+
+The numbers must be those of frames/*.npy.
 
     read_back.py TAUT FORMAT      TAUT: the program; FORMAT: usd, obj, ply, vtk, gltf, pc2 or mdd
 
-Ends with 77 (skipped) where the libraries are not there: `./taut test` fetches them into build/test-python and build/test-node.
+Ends with 77 (skipped) where the libraries are not there: `./taut test` fetches them into
+build/test-python and build/test-node.
 """
 import json
 import os
@@ -68,7 +71,8 @@ WEDGE = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\
 def wedge_samples():
     """What wedge.f32 holds: 4 samples of 4 vertices, each moved somewhere else."""
     rest = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
-    return np.array([rest + 0.25 * k * np.array([[0, 0, 0], [1, 0, 0], [0, -0.5, 0], [0, 0.5, 1]]) for k in range(4)], np.float32)
+    way = np.array([[0, 0, 0], [1, 0, 0], [0, -0.5, 0], [0, 0.5, 1]])
+    return np.array([rest + 0.25 * k * way for k in range(4)], np.float32)
 
 
 def check_wedge(points, frame):
@@ -76,7 +80,8 @@ def check_wedge(points, frame):
     samples = wedge_samples().astype(float)
     place = min(frame * FRAME_INTERVAL * 50, 3)
     before = min(int(place), 2)
-    expected = samples[before] + (place - before) * (samples[before + 1] - samples[before]) + [5, 0, 0]
+    step = samples[before + 1] - samples[before]
+    expected = samples[before] + (place - before) * step + [5, 0, 0]
     near(points, expected, 1e-6, f"wedge, frame {frame}")
 
 
@@ -119,7 +124,8 @@ class Run:
         self.cloths = json.loads((frames / "cloths.json").read_text())
 
     def call(self, *arguments):
-        done = subprocess.run([self.taut, *arguments], cwd=self.folder, capture_output=True, text=True, timeout=120)
+        done = subprocess.run([self.taut, *arguments], cwd=self.folder, capture_output=True,
+                              text=True, timeout=120)
         assert done.returncode == 0, done.stderr
 
     def export(self, kind, *more):
@@ -133,7 +139,8 @@ class Run:
         """(points of all frames, triangles from 0, texture coordinates) of a cloth."""
         c = self.cloths[number]
         nodes = slice(c["first_node"], c["first_node"] + c["nodes"])
-        triangles = self.triangles[c["first_triangle"]:c["first_triangle"] + c["triangles"]] - c["first_node"]
+        first = c["first_triangle"]
+        triangles = self.triangles[first:first + c["triangles"]] - c["first_node"]
         return self.x[:, nodes], triangles, self.uv[nodes]
 
 
@@ -152,7 +159,8 @@ def near(a, b, tolerance, what):
 def check_ball(points, frame):
     """A sphere of radius 0.3 that has flown for the frame's time."""
     centre = np.array([0, 2, 0.25]) * frame * FRAME_INTERVAL
-    near(np.linalg.norm(np.asarray(points, dtype=float) - centre, axis=1), np.full(len(points), 0.3), 1e-6, f"ball, frame {frame}")
+    distances = np.linalg.norm(np.asarray(points, dtype=float) - centre, axis=1)
+    near(distances, np.full(len(points), 0.3), 1e-6, f"ball, frame {frame}")
 
 
 def check_box(points):
@@ -169,7 +177,8 @@ def usd_complaints(file):
     from pxr import Usd, UsdValidation
     validators = UsdValidation.ValidationRegistry().GetOrLoadAllValidators()
     assert len(validators) >= 20, "the validators are not there"
-    return [error.GetErrorAsString() for error in UsdValidation.ValidationContext(validators).Validate(Usd.Stage.Open(str(file)))]
+    errors = UsdValidation.ValidationContext(validators).Validate(Usd.Stage.Open(str(file)))
+    return [error.GetErrorAsString() for error in errors]
 
 
 def check_usd(run):
@@ -188,23 +197,28 @@ def check_usd(run):
         points, triangles, uv = run.cloth(number)
         mesh = meshes[name]
         assert mesh.GetPointsAttr().GetNumTimeSamples() == 13
-        for attribute in (mesh.GetFaceVertexIndicesAttr(), mesh.GetFaceVertexCountsAttr(), UsdGeom.PrimvarsAPI(mesh).GetPrimvar("st").GetAttr()):
+        st = UsdGeom.PrimvarsAPI(mesh).GetPrimvar("st")
+        for attribute in (mesh.GetFaceVertexIndicesAttr(), mesh.GetFaceVertexCountsAttr(),
+                          st.GetAttr()):
             assert attribute.GetNumTimeSamples() == 0, "written once"
         same(np.reshape(mesh.GetFaceVertexIndicesAttr().Get(), (-1, 3)), triangles, "triangles")
         same(mesh.GetFaceVertexCountsAttr().Get(), np.full(len(triangles), 3), "counts")
-        same(UsdGeom.PrimvarsAPI(mesh).GetPrimvar("st").Get(), uv, "st")
-        assert UsdGeom.PrimvarsAPI(mesh).GetPrimvar("st").GetInterpolation() == "vertex"
+        same(st.Get(), uv, "st")
+        assert st.GetInterpolation() == "vertex"
         assert mesh.GetDoubleSidedAttr().Get() and mesh.GetSubdivisionSchemeAttr().Get() == "none"
         for frame in TIMES:
             same(mesh.GetPointsAttr().Get(frame), points[frame], f"points, frame {frame}")
-            same(mesh.GetExtentAttr().Get(frame), [points[frame].min(axis=0), points[frame].max(axis=0)], "extent")
+            extent = [points[frame].min(axis=0), points[frame].max(axis=0)]
+            same(mesh.GetExtentAttr().Get(frame), extent, "extent")
     for frame in TIMES:
         check_ball(meshes["ball"].GetPointsAttr().Get(frame), frame)
         check_wedge(meshes["wedge"].GetPointsAttr().Get(frame), frame)
     assert meshes["solid_1"].GetPointsAttr().GetNumTimeSamples() == 0
     check_box(meshes["solid_1"].GetPointsAttr().Get())
 
-    file = run.export("usd", "--scale", "100", "--up", "y", "--frames", "3:9:3", "--out", "centimetres") / "sequence.usda"
+    out = run.export("usd", "--scale", "100", "--up", "y", "--frames", "3:9:3",
+                     "--out", "centimetres")
+    file = out / "sequence.usda"
     assert usd_complaints(file) == [], usd_complaints(file)
     stage = Usd.Stage.Open(str(file))
     assert UsdGeom.GetStageMetersPerUnit(stage) == 0.01 and UsdGeom.GetStageUpAxis(stage) == "Y"
@@ -217,7 +231,8 @@ def check_usd(run):
 def check_usd_is_read_again(run):
     """The cloth of the file in centimetres, Y up, starts where frame 3 was."""
     (run.folder / "again.toml").write_text(
-        '[time]\nstep = 1e-3\nframes = 1\n[[cloth]]\nmesh = "result/../centimetres/sequence.usda"\nprim = "/World/sheet_one"\n'
+        '[time]\nstep = 1e-3\nframes = 1\n[[cloth]]\n'
+        'mesh = "result/../centimetres/sequence.usda"\nprim = "/World/sheet_one"\n'
         "density = 0.15\nk_stretch = 500\n")
     os.environ["TAUT_PYTHON"] = sys.executable
     run.call("run", "again.toml", "--out", "again", "--quiet", "--no-picture")
@@ -239,11 +254,13 @@ def check_mesh_files(run, kind):
             file = out / f"{name}_{frame:06}.{kind}"
             mesh = meshio.read(file)
             same(mesh.points.astype(np.float32), points[frame], f"meshio: {file.name}")
-            same(np.concatenate([block.data for block in mesh.cells]), triangles, "meshio: triangles")
+            read_triangles = np.concatenate([block.data for block in mesh.cells])
+            same(read_triangles, triangles, "meshio: triangles")
             other = trimesh.load(file, process=False, maintain_order=True)
             same(np.asarray(other.vertices, np.float32), points[frame], f"trimesh: {file.name}")
             same(other.faces, triangles, "trimesh: triangles")
-            read_uv = np.stack([mesh.point_data["s"], mesh.point_data["t"]], 1) if kind == "ply" else mesh.point_data["obj:vt"]
+            data = mesh.point_data
+            read_uv = np.stack([data["s"], data["t"]], 1) if kind == "ply" else data["obj:vt"]
             same(read_uv.astype(np.float32), uv, "texture coordinates")
     for frame in TIMES:
         check_ball(meshio.read(out / f"ball_{frame:06}.{kind}").points, frame)
@@ -269,26 +286,33 @@ def check_vtk(run):
     for number, name in enumerate(["sheet_one", "triangle"]):
         points, triangles, uv = run.cloth(number)
         own = [e for e in entries if e.get("part") == str(number)]
-        near([float(e.get("timestep")) for e in own], np.arange(13) * FRAME_INTERVAL, 1e-12, "times")
+        times = [float(e.get("timestep")) for e in own]
+        near(times, np.arange(13) * FRAME_INTERVAL, 1e-12, "times")
         for frame in TIMES:
             data = read_vtp(out / own[frame].get("file"))
             same(vtk_to_numpy(data.GetPoints().GetData()), points[frame], f"{name}, frame {frame}")
-            same(vtk_to_numpy(data.GetPolys().GetConnectivityArray()).reshape(-1, 3), triangles, "triangles")
+            read_triangles = vtk_to_numpy(data.GetPolys().GetConnectivityArray())
+            same(read_triangles.reshape(-1, 3), triangles, "triangles")
             same(vtk_to_numpy(data.GetPointData().GetTCoords()), uv, "texture coordinates")
             velocity = vtk_to_numpy(data.GetPointData().GetArray("velocity"))
             moved = (points[frame].astype(float) - points[frame - 1]) / FRAME_INTERVAL
-            near(velocity, moved if frame else np.tile([0, 0, 0] if number == 0 else [1, 0, 0.5], (len(uv), 1)), 1e-5, "velocity")
-            near(vtk_to_numpy(data.GetPointData().GetArray("stretch")), stretch(points[0], points[frame], triangles, number), 2e-5, "stretch")
+            first = np.tile([0, 0, 0] if number == 0 else [1, 0, 0.5], (len(uv), 1))
+            near(velocity, moved if frame else first, 1e-5, "velocity")
+            strain = stretch(points[0], points[frame], triangles, number)
+            near(vtk_to_numpy(data.GetPointData().GetArray("stretch")), strain, 2e-5, "stretch")
             assert data.GetPointData().GetScalars().GetName() == "stretch"
             contact = vtk_to_numpy(data.GetPointData().GetArray("contact"))
             first = run.cloths[number]["first_node"]
             recorded = np.load(run.folder / f"result/frames/contact_{frame:06}.npy")
-            assert recorded.dtype == np.uint8 and recorded.shape == (len(run.x[0]),), "docs/results.md"
+            assert recorded.dtype == np.uint8, "docs/results.md"
+            assert recorded.shape == (len(run.x[0]),), "docs/results.md"
             same(contact, recorded[first:first + len(contact)].astype(np.float32), "contact")
-            assert (distance_from_ball(points[frame], frame)[contact > 0] < 1e-4).all(), "what touches is near"
+            distance = distance_from_ball(points[frame], frame)
+            assert (distance[contact > 0] < 1e-4).all(), "what touches is near"
             touched.append((contact > 0).sum())
     assert max(touched) > 0, "no node touches the ball: the contact field is not tested"
-    assert len({e.get("file") for e in entries if e.get("part") == "3"}) == 1, "what does not move has one file"
+    still = {e.get("file") for e in entries if e.get("part") == "3"}
+    assert len(still) == 1, "what does not move has one file"
     check_box(vtk_to_numpy(read_vtp(out / "solid_1.vtp").GetPoints().GetData()))
     check_vtk_of_an_older_result(run)
 
@@ -301,8 +325,10 @@ def check_vtk_of_an_older_result(run):
     out = run.export("vtk", "--out", "older")
     near_ball = []
     for frame in TIMES:
-        contact = vtk_to_numpy(read_vtp(out / f"sheet_one_{frame:06}.vtp").GetPointData().GetArray("contact"))
-        same(contact, (distance_from_ball(run.cloth(0)[0][frame], frame) <= 1.6e-4).astype(np.float32), "contact from distances")
+        data = read_vtp(out / f"sheet_one_{frame:06}.vtp").GetPointData()
+        contact = vtk_to_numpy(data.GetArray("contact"))
+        expected = distance_from_ball(run.cloth(0)[0][frame], frame) <= 1.6e-4
+        same(contact, expected.astype(np.float32), "contact from distances")
         near_ball.append(contact.sum())
     assert max(near_ball) > 0
 
@@ -318,7 +344,8 @@ def stretch(rest, x, triangles, number):
     """The largest strain of the edges at each node: a grid's rows and columns, a mesh's edges."""
     if number == 0:
         nodes = np.arange(42).reshape(6, 7)
-        edges = np.concatenate([np.stack([nodes[:, :-1].ravel(), nodes[:, 1:].ravel()], 1), np.stack([nodes[:-1].ravel(), nodes[1:].ravel()], 1)])
+        edges = np.concatenate([np.stack([nodes[:, :-1].ravel(), nodes[:, 1:].ravel()], 1),
+                                np.stack([nodes[:-1].ravel(), nodes[1:].ravel()], 1)])
     else:
         edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
     length = lambda p: np.linalg.norm(p[edges[:, 0]].astype(float) - p[edges[:, 1]], axis=1)
@@ -336,8 +363,11 @@ def validate_gltf(file):
         print("not validated: no build/test-node; ./taut test fetches gltf-validator with npm")
         return None
     script = ("const v = require(process.argv[1]), fs = require('fs');"
-              "v.validateBytes(new Uint8Array(fs.readFileSync(process.argv[2])), {maxIssues: 20}).then(r => console.log(JSON.stringify(r)));")
-    return json.loads(subprocess.run(["node", "-e", script, str(validator), str(file)], capture_output=True, text=True, check=True).stdout)
+              "v.validateBytes(new Uint8Array(fs.readFileSync(process.argv[2])), {maxIssues: 20})"
+              ".then(r => console.log(JSON.stringify(r)));")
+    done = subprocess.run(["node", "-e", script, str(validator), str(file)], capture_output=True,
+                          text=True, check=True)
+    return json.loads(done.stdout)
 
 
 def read_glb(file):
@@ -349,7 +379,8 @@ def read_glb(file):
         a, view = gltf["accessors"][k], gltf["bufferViews"][gltf["accessors"][k]["bufferView"]]
         width = {"SCALAR": 1, "VEC2": 2, "VEC3": 3}[a["type"]]
         kind = {5126: "<f4", 5125: "<u4"}[a["componentType"]]
-        return np.frombuffer(binary, kind, a["count"] * width, view["byteOffset"]).reshape(-1, width)
+        values = np.frombuffer(binary, kind, a["count"] * width, view["byteOffset"])
+        return values.reshape(-1, width)
 
     return gltf, accessor
 
@@ -361,10 +392,12 @@ def check_gltf(run):
     report = validate_gltf(file)
     if report:
         issues = report["issues"]
-        assert issues["numErrors"] == 0 and issues["numWarnings"] == 0, json.dumps(issues, indent=1)
+        clean = issues["numErrors"] == 0 and issues["numWarnings"] == 0
+        assert clean, json.dumps(issues, indent=1)
         assert report["info"]["hasMorphTargets"] and report["info"]["animationCount"] == 1
     gltf, accessor = read_glb(file)
-    assert [node["name"] for node in gltf["nodes"]] == ["sheet_one", "triangle", "ball", "solid_1", "wedge"]
+    names = [node["name"] for node in gltf["nodes"]]
+    assert names == ["sheet_one", "triangle", "ball", "solid_1", "wedge"], names
     animation = gltf["animations"][0]
     times = accessor(animation["samplers"][0]["input"])[:, 0]
     near(times, np.arange(13) * FRAME_INTERVAL, 1e-7, "times")
@@ -372,7 +405,8 @@ def check_gltf(run):
         primitive = gltf["meshes"][number]["primitives"][0]
         base = accessor(primitive["attributes"]["POSITION"])
         targets = np.array([accessor(t["POSITION"]) for t in primitive["targets"]])
-        weights = accessor(animation["samplers"][number]["output"]).reshape(len(times), len(targets))
+        weights = accessor(animation["samplers"][number]["output"])
+        weights = weights.reshape(len(times), len(targets))
         for frame in TIMES:
             shown = base + np.tensordot(weights[frame], targets, 1)
             if number == 2:
@@ -380,8 +414,10 @@ def check_gltf(run):
             else:
                 near(shown, y_up(run.cloth(number)[0][frame]), 2e-7, f"points, frame {frame}")
     points, triangles, uv = run.cloth(0)
-    same(accessor(gltf["meshes"][0]["primitives"][0]["indices"]).reshape(-1, 3), triangles, "triangles")
-    near(accessor(gltf["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"]), np.stack([uv[:, 0], 1 - uv[:, 1]], 1), 1e-7, "texture")
+    primitive = gltf["meshes"][0]["primitives"][0]
+    same(accessor(primitive["indices"]).reshape(-1, 3), triangles, "triangles")
+    texture = accessor(primitive["attributes"]["TEXCOORD_0"])
+    near(texture, np.stack([uv[:, 0], 1 - uv[:, 1]], 1), 1e-7, "texture")
     assert "targets" not in gltf["meshes"][3]["primitives"][0]
     scene = trimesh.load(file, process=False)
     same(np.asarray(scene.geometry["sheet_one"].vertices, np.float32), y_up(points[0]), "trimesh")
@@ -415,14 +451,17 @@ def read_mdd(file):
 def check_cache(run, kind):
     """No library of Python's reads point caches: NumPy, from the formats' descriptions."""
     import meshio
+    read = {"pc2": read_pc2, "mdd": read_mdd}[kind]
     out = run.export(kind)
-    assert sorted(p.name for p in out.iterdir()) == sorted(
-        [f"{n}.{e}" for n in ("sheet_one", "triangle", "ball", "wedge") for e in ("obj", kind)] + ["solid_1.obj"])
+    moving = ("sheet_one", "triangle", "ball", "wedge")
+    expected = [f"{name}.{ending}" for name in moving for ending in ("obj", kind)]
+    assert sorted(p.name for p in out.iterdir()) == sorted(expected + ["solid_1.obj"])
     for number, name in enumerate(["sheet_one", "triangle"]):
-        cache = {"pc2": read_pc2, "mdd": read_mdd}[kind](out / f"{name}.{kind}")
-        same(cache.astype(np.float32), run.cloth(number)[0], name)
-        same(meshio.read(out / f"{name}.obj").points.astype(np.float32), cache[0].astype(np.float32), "the mesh is the first sample")
-    ball, wedge = ({"pc2": read_pc2, "mdd": read_mdd}[kind](out / f"{name}.{kind}") for name in ("ball", "wedge"))
+        cache = read(out / f"{name}.{kind}").astype(np.float32)
+        same(cache, run.cloth(number)[0], name)
+        mesh = meshio.read(out / f"{name}.obj")
+        same(mesh.points.astype(np.float32), cache[0], "the mesh is the first sample")
+    ball, wedge = (read(out / f"{name}.{kind}") for name in ("ball", "wedge"))
     for frame in TIMES:
         check_ball(ball[frame], frame)
         check_wedge(wedge[frame], frame)

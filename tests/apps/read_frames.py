@@ -43,7 +43,8 @@ def main():
     code = lines_of_the_page()
     with tempfile.TemporaryDirectory() as folder:
         (Path(folder) / "scene.toml").write_text(SCENE)
-        subprocess.run([sys.argv[1], "run", "scene.toml", "--out", "r", "--quiet", "--no-picture"], cwd=folder, check=True)
+        run = [sys.argv[1], "run", "scene.toml", "--out", "r", "--quiet", "--no-picture"]
+        subprocess.run(run, cwd=folder, check=True)
         names, printed = {}, io.StringIO()
         with redirect_stdout(printed):
             exec(code.replace("out/ball", f"{folder}/r"), names)

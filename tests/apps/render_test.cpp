@@ -1,5 +1,5 @@
 // taut render: which files it makes, and what without ffmpeg. What is in the pictures:
-// tests/scene/frame_picture_test.cpp.
+// tests/results/frame_picture_test.cpp.
 
 #include <gtest/gtest.h>
 

@@ -38,8 +38,8 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 
 std::string nearest_name(const std::string& word, std::span<const std::string> known) {
   std::string best;
-  // A third of the letters may differ: enough for a slip of the finger, too little for a different
-  // word.
+  // A third of the letters may differ: enough for a slip of the finger, too
+  // little for a different word.
   std::size_t best_distance = std::max<std::size_t>(1, word.size() / 3) + 1;
   for (const std::string& name : known) {
     const std::size_t distance = edit_distance(word, name);

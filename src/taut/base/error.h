@@ -1,7 +1,7 @@
 #pragma once
-// Bad input (scene, mesh, matrix, checkpoint) is an InputError: its text names the place, what was
-// found, what was expected and what to do. A numerical outcome is never an exception: see
-// base/status.h.
+// Bad input (scene, mesh, matrix, checkpoint) is an InputError: its text names the place,
+// what was found, what was expected and what to do. A numerical outcome is never an
+// exception: see base/status.h.
 
 #include <span>
 #include <stdexcept>

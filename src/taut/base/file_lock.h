@@ -1,7 +1,7 @@
 #pragma once
-// A mark on a file that a living process is writing it. The kernel takes the mark away when the
-// process ends, however it ends, so it never goes stale as a file with a process number in it
-// would.
+// A mark on a file that a living process is writing it. The kernel takes the mark away
+// when the process ends, however it ends, so it never goes stale as a file with a
+// process number in it would.
 //
 // It is a lock of the open file (fcntl's F_OFD_SETLK where the system has it): advisory, others may
 // read and write the file as before.
@@ -15,8 +15,8 @@ namespace taut {
 // nothing happens.
 void mark_as_being_written(std::FILE* file);
 
-// Whether another open file, of this or another process, holds the mark. False when there is no
-// such file.
+// Whether another open file, of this or another process, holds the mark. False
+// when there is no such file.
 bool is_being_written(const std::filesystem::path& path);
 bool is_being_written(int descriptor);
 

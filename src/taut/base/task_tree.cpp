@@ -29,10 +29,10 @@ TaskTree::TaskTree(std::vector<Index> parent)
   plan_way_down();
 }
 
-// On the way up the thread that started the run takes leaves from the last one on, the others from
-// the first one on, and they meet in the middle. So on the way down they begin there: children near
-// the middle come first. Of what is left to be taken, others take the oldest, the thread itself the
-// youngest.
+// On the way up the thread that started the run takes leaves from the last one on, the others
+// from the first one on, and they meet in the middle. So on the way down they begin there:
+// children near the middle come first. Of what is left to be taken, others take the oldest, the
+// thread itself the youngest.
 void TaskTree::plan_way_down() {
   std::vector<Index> first_leaf(parent_.size()), end_leaf(parent_.size());
   for (Index t = 0, leaf = 0; t < size(); ++t) {

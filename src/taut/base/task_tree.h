@@ -4,17 +4,13 @@
 //   run_upwards(tree, f)     f(t) once for every task, after all its children
 //   run_downwards(tree, f)   f(t) once for every task, after its parent
 //
-// The way down goes back the way up: a thread finds most of what it reads in its own cache, since
-// it begins where it ended.
-//
-// Near the root there are fewer tasks than threads. Side tasks, which need nothing of the tree's
-// and nothing needs, fill that time: they begin when a thread finds no other.
-//
 // Tasks are numbered so that parents come after their children. f is called from several threads;
 // what it computes must not depend on which tasks ran before, but for those above. A task may
 // itself run parallel loops. With one thread the tasks run in the order of their numbers
-// (downwards: reversed). One run of a tree at a time: it keeps the counters of open children, so
-// that a run allocates nothing itself.
+// (downwards: reversed). The way down goes back the way up, so that a thread finds most of what it
+// reads in its own cache. Side tasks, which need nothing of the tree's and nothing needs, fill the
+// time near the root, where there are fewer tasks than threads. One run of a tree at a time: it
+// keeps the counters of open children, so that a run allocates nothing itself.
 
 #include <atomic>
 #include <functional>

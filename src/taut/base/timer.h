@@ -1,6 +1,6 @@
 #pragma once
-// Wall-clock stopwatch in milliseconds. Clocks are for reports only: no choice in Taut depends on
-// one.
+// Wall-clock stopwatch in milliseconds. Clocks are for reports only: no
+// choice in Taut depends on one.
 
 #include <chrono>
 

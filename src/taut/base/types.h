@@ -1,11 +1,11 @@
 #pragma once
 // The few types that every room shares.
 //
-//   Vec3, Mat3     3-vectors and 3x3 matrices of doubles (Eigen, column-major)
-//   Index          signed 32-bit counter of nodes, blocks and unknowns (2^31 unknowns are beyond a
-//                  CPU's memory here)
-//   flat(x)        N node vectors seen as 3N doubles x0 y0 z0 x1 ...: the order of every vector of
-//                  the linear system
+//   Vec3, Mat3   3-vectors and 3x3 matrices of doubles (Eigen, column-major)
+//   Index        signed 32-bit counter of nodes, blocks and unknowns: 2^31 unknowns are beyond a
+//                processor's memory here
+//   flat(x)      N node vectors seen as 3N doubles x0 y0 z0 x1 ...: the order of every vector of
+//                the linear system
 
 #include <Eigen/Core>
 #include <cstdint>

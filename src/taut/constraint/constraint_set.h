@@ -1,23 +1,19 @@
 #pragma once
 // Per-node constraints of one step: which directions of a node are prescribed, and how far it moves
-// along them. docs/mathematics.md, 3, paper Eq. 3, 4, 12. Nothing downstream of this type asks
+// along them (docs/mathematics.md, 3; paper Eq. 3, 4, 12). Nothing downstream of this type asks
 // where a constraint came from.
 //
 //   ndof(i)          3, 2, 1 or 0 free directions of node i
-//   U_i              3 x ndof, orthonormal columns spanning the free directions           S_i = U_i
-//   U_iᵀ
-//   displacement(i)  (I - S_i) d, m: the prescribed motion over this step, in the constrained
-//                    directions only
+//   U_i              3 x ndof, orthonormal columns spanning the free directions; S_i = U_i U_iᵀ
+//   displacement(i)  (I - S_i) d, m: the prescribed motion over this step
 //   z_i              the prescribed part of the integrator's unknown, made from displacement(i) by
-//                    the integrator (step/): the paper prescribes velocities; a displacement says
-//                    the same for every integrator and lets no position drift
+//                    the integrator
 //
-// Building it: `constrain(i, n, distance)` says n·(x_end - x_start) = distance for a unit direction
-// n (any length > 0 is accepted, the equation is taken as written); several directions of one node
-// need not be orthogonal: d solves n_k·d = distance_k for all k. A direction that adds less than
-// `parallel_tolerance` to the span of the earlier ones is merged with them (its distance is then
-// ignored: two nearly parallel normals cannot both be met exactly). `fix(i, d)` prescribes all
-// three.
+// `constrain(i, n, distance)` says n·(x_end - x_start) = distance; d solves this for all directions
+// n of a node, which need not be orthogonal, nor of length 1. A direction that adds less than
+// `parallel_tolerance` to the span of the earlier ones is merged with them and its distance
+// ignored: two nearly parallel normals cannot both be met exactly. `fix(i, d)` prescribes all
+// three. Why displacements: docs/architecture.md, Constraints.
 
 #include <array>
 #include <span>
@@ -35,8 +31,8 @@ constexpr double parallel_tolerance = 1e-3;
 // preconditioners that are not block-wise see a difference.
 enum class FrameChoice {
   duff,  // Duff et al. 2017, "Building an orthonormal basis, revisited": no bad direction
-  // the paper's closed form, its "otherwise" case repaired; loses digits near |p1| = 1, exact at
-  // both poles
+  // the paper's closed form, its "otherwise" case repaired; loses digits near |p1| = 1, exact
+  // at both poles
   paper_eq13
 };
 

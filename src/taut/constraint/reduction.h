@@ -1,11 +1,11 @@
 #pragma once
-// Elimination of the constrained unknowns, paper Section 3:
+// Elimination of the constrained unknowns (paper Section 3, Eq. 8, 9a-c, 11):
 //
 //   Ã = Uᵀ A U        b̃ = Uᵀ (b - A (I-S) z)        Ã ỹ = b̃        x = U ỹ + (I-S) z
-//   (Eq. 8, 9a-c, 11)
 //
-//   A   3N x 3N, 3x3 blocks      U  3N x n, n = free_dofs()      Ã  n x n, blocks of ndof(i) x
-//                                                                   ndof(j): no new nonzeros
+//   A   3N x 3N, blocks of 3x3
+//   U   3N x n, n = free_dofs()
+//   Ã   n x n, blocks of ndof(i) x ndof(j): no new nonzeros
 //
 // The pattern of Ã is rebuilt only when some ndof (or the mask) changes. `mask` (one byte per block
 // of A) keeps a subset of the blocks: that is how the matrix core is reduced (restriction to range

@@ -65,8 +65,8 @@ class Islands {
     assert(free >= 0);
     if (attached) attached_[island(free)] = 1;
   }
-  // The one with the least node is kept, so that the order of islands does not depend on that of
-  // rows.
+  // The one with the least node is kept, so that the order of islands does
+  // not depend on that of rows.
   void join(Index a, Index b) {
     const Index p = island(a), q = island(b), kept = std::min(p, q), lost = std::max(p, q);
     parent_[lost] = kept;

@@ -1,21 +1,17 @@
 #pragma once
-// Broad phase: which vertices, edges and triangles of a surface may come near each other in a step.
+// Broad phase: which vertices, edges and triangles of a surface may come near each other in a step
+// (docs/design/collision-detection.md).
 //
 //   moving box  of a vertex, an edge or a triangle: the smallest box around its corners at x0 and
-//               that at x1 (m), and all that lie between the two in the course of the step.
-//               Straight paths stay inside
-//   margin      m: every pair is reported that is not more than `margin` apart along one axis, on
-//               the same side, at x0 and at x1; so every pair that is ever within `margin` of each
-//               other during the step (the reverse does not hold). Cloth that flies as a whole
-//               gives no more pairs than cloth at rest
+//               that at x1 (m), and all that lie between the two; straight paths stay inside
+//   margin      m: every pair that is ever within `margin` of each other in the step is reported.
+//               The reverse does not hold: a pair is dropped where along some axis its boxes are
+//               further apart, on the same side, at x0 and at x1
 //
 // Left out: pairs that share a vertex; pairs with both sides on solids; where `moved` is given,
-// pairs without a vertex marked in it. Each remaining pair is reported once. Lists come in an order
-// that depends on the surface and the positions, not on the number of threads.
-//
-// Method: one packed tree of eight children a node for vertices, edges and triangles each, ordered
-// once by halving the positions given to the constructor. Boxes are stored as floats, rounded
-// outwards. refit is O(n) and moves no node; a query takes blocks of 64 items through a tree.
+// pairs without a vertex marked in it. Each remaining pair is reported once, in an order that
+// depends on the surface and the positions, not on the number of threads. Boxes are floats, rounded
+// outwards. refit is O(n) and moves no node.
 
 #include <cstdint>
 #include <functional>

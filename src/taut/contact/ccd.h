@@ -1,41 +1,17 @@
 #pragma once
 // Continuous collision detection: does a vertex meet a triangle, or an edge an edge, while all of
-// them move along straight lines?
+// them move along straight lines, x(t) = (1 - t) x0 + t x1, t in [0, 1]?
 //
-//   x(t) = (1 - t) x0 + t x1        each vertex, t in [0, 1], no unit
-//   hit     the distance is at most `minimum_separation` at some t in [0, 1]. Touching counts, and
-//           so does contact at t = 0
-//   time    a lower bound of the first such t. At `time` and at all times before, the pair is
-//           surely further apart than `minimum_separation`; the only exception is time = 0, where
-//           nothing was proved
+//   hit     the distance is at most `minimum_separation` (m) at some t. Touching counts, and so
+//           does contact at t = 0
+//   time    a lower bound of the first such t: at `time` and before, the pair is surely further
+//           apart; the only exception is time = 0, where nothing was proved
 //
-// CONSERVATIVE: "no hit" is proved, rounding included. What is reported as a hit may be a near
-// miss: the pair comes as near as minimum_separation + tolerance (or as rounding, see below), or
-// max_checks ran out. Non-finite coordinates are a hit at time 0.
-//
-// Why it cannot miss. Write the pair's differences of corners as D_k(t): p - a, p - b, p - c, or
-// a - c, a - d, b - c, b - d. Each is linear in t, and the difference between any two points of the
-// two shapes is a weighted mean of them. So if for some unit vector n
-//
-//   n·D_k(t) > minimum_separation     for all k, at t = r and at t = s,
-//
-// it holds at all t between and for all pairs of points: the plane with normal n separates the pair
-// throughout [r, s]. The algorithm walks from r = 0: n is the direction between the closest points
-// at r, s the last time up to which that plane separates; then r = s, until s = 1 (no hit) or the
-// distance is used up (hit at r). How n and s are found does not matter for the proof: the
-// inequality at both ends is then tested, with
-//
-//   n·D_k(t) evaluated > minimum_separation |n| + 16 u sum_i |n_i| max_k |D_k,i|     u = 2^-53
-//
-// which bounds all rounding: differences of given doubles have a relative error of u, the products
-// and sums of n·D and of the mean over t add less than 8 u (docs/mathematics.md, section 6). The
-// error is relative to the pair's size, not to its distance from the origin. The purpose is the
-// same as of Wang, Ferguson, Schneider, Jiang, Attene and Panozzo, "A Large Scale Benchmark and an
-// Inclusion-Based Algorithm for Continuous Collision Detection" (ACM Transactions on Graphics
-// 2021): bounds in place of roots. There (t, u, v) is halved; here only t is advanced, since a
-// plane settles all (u, v) at once.
-//
-// Callable from any thread; no allocation.
+// Conservative: "no hit" is proved, rounding included. What is reported as a hit may be a near
+// miss: the pair comes as near as minimum_separation + tolerance, or 2e-15 of its size, or
+// max_checks ran out. Coordinates that are not finite are a hit at time 0. Callable from any
+// thread; no allocation. Why it cannot miss: docs/mathematics.md, 6, and
+// docs/design/collision-detection.md.
 
 #include <array>
 #include <span>

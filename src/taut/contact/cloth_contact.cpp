@@ -150,8 +150,8 @@ std::vector<ContactRow> ClothContact::touched_rows(const Work& work) const {
   return rows;
 }
 
-// Collisions of the pairs with a node in `moved` (all, where it is empty), and those nodes'
-// obstacles.
+// Collisions of the pairs with a node in `moved` (all, where it is empty),
+// and those nodes' obstacles.
 void ClothContact::find_trouble(Work& work, std::span<const std::uint8_t> moved) {
   const auto skip = [&](const CollisionPair& pair) {
     return ignored(pair) || work.zones.together(pair.node);

@@ -1,29 +1,17 @@
 #pragma once
 // What keeps cloth from passing through itself, other cloths and solids' meshes: corrects the
 // positions at the end of a step so that no pair of the surface meets on the way, or says that it
-// cannot (docs/mathematics.md, 7; Bridson, Fedkiw & Anderson 2002; paper Section 7).
+// cannot (docs/mathematics.md, 7; docs/design/cloth-contact.md; Bridson, Fedkiw & Anderson 2002).
 //
 //   x0            m, positions at the start, without intersections
 //   x1            m, where the dynamics would end; changed in place
 //   thickness     m: how far apart layers keep when they can
-//   separation    m: how far apart they surely stay: continuous detection reports whatever comes
-//                 nearer
+//   separation    m: how far apart they surely stay
 //
-//   1  repulsion  pairs nearer than their thickness at x0 must not come nearer, and go a fifth of
-//                 what is missing apart (repulsion.h); they begin with what pushed them in the step
-//                 before (pair_forces.h)
-//   2  impulses   pairs that collide on the way end apart on the side where they were, with Coulomb
-//                 friction (impulses.h); repeated for the pairs of moved nodes until none collides,
-//                 at most `sweeps` times. Nodes stay out of analytic solids likewise
-//   3  zones      what still collides moves as rigid bodies, merged as they grow, until nothing
-//                 collides (rigid_zones.h)
-//
-// A pair is searched again whenever one of its nodes has moved, so that at the end every pair has
-// been proved free on its final way, or lies in one zone, inside which nothing can meet.
-//
-// The average velocities (x1 - x0)/h keep their linear and angular momentum (angular_momentum.h),
-// but for what pins and solids take and for zones counted as inexact. Deterministic: the same bits
-// for any number of threads. One step at a time.
+// Repulsion, then impulses, then rigid zones. At the end every pair has been proved free on its
+// final way, or lies in one zone, inside which nothing can meet. The average velocities (x1 - x0)/h
+// keep their linear and angular momentum, but for what pins and solids take and for zones counted
+// as inexact. Deterministic: the same bits for any number of threads. One step at a time.
 
 #include <memory>
 #include <string>
@@ -86,8 +74,8 @@ class ClothContact {
   ClothContact(CollisionSurface surface, std::vector<CollisionBody> bodies,
                std::span<const Vec3> start, std::vector<double> mass, ContactOptions options);
 
-  // On failure x1 is not to be used, and the message says which nodes, cloths and solids cannot be
-  // kept apart.
+  // On failure x1 is not to be used, and the message says which nodes, cloths and
+  // solids cannot be kept apart.
   Status resolve(const ClothContactStep& step, std::span<Vec3> x1);
 
   const CollisionSurface& surface() const { return *surface_; }
@@ -99,8 +87,8 @@ class ClothContact {
   const ZoneState& zone_state() const { return zones_; }
   // Of the last resolve: what pushed the pairs, ascending by their first vertex.
   const std::vector<PairForce>& forces() const { return forces_; }
-  // Of the last resolve, one a vertex: who pushed it at the end, cloth (touched_cloth) or a solid
-  // (touched_solid).
+  // Of the last resolve, one a vertex: who pushed it at the end, cloth (touched_cloth) or
+  // a solid (touched_solid).
   std::span<const std::uint8_t> touched() const { return touched_; }
   // After a failure: the nodes that the message is about.
   const std::vector<Index>& trouble() const { return trouble_; }
@@ -142,8 +130,8 @@ class ClothContact {
   std::vector<Index> trouble_;
 };
 
-// A tenth of the mean edge, at most 1 mm: less than what folding cloth can give way, more than
-// rounding. m.
+// A tenth of the mean edge, at most 1 mm: less than what folding cloth can give
+// way, more than rounding. m.
 double default_thickness(const CollisionSurface& surface, std::span<const Vec3> rest);
 
 }  // namespace taut

@@ -1,5 +1,5 @@
 #pragma once
-// Options of contact; validated by scene/.
+// Options of contact. The scene's reader validates them.
 
 #include <string>
 #include <vector>

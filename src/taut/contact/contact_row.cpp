@@ -45,8 +45,8 @@ auto with_nodes(ContactRow& row, std::span<const Vec3> x1, const Function& f) {
   return row.node[1] < 0 ? f(RowNodes<1>(row, x1)) : f(RowNodes<4>(row, x1));
 }
 
-// What friction adds to bring the tangential motion to that of the other side, within Coulomb's
-// cone.
+// What friction adds to bring the tangential motion to that of the other
+// side, within Coulomb's cone.
 Vec3 friction_step(const ContactRow& row, const Vec3& r, double mass) {
   const Vec3 motion = r - row.start - row.carried;
   const Vec3 slip = motion - row.normal.dot(motion) * row.normal;
@@ -129,8 +129,8 @@ void weigh(ContactRow& row, std::span<const double> inverse_mass, std::span<cons
 
 namespace {
 
-// The groups of the rows, phase after phase: f(g, rows) with all groups of a phase at the same
-// time.
+// The groups of the rows, phase after phase: f(g, rows) with all groups of
+// a phase at the same time.
 template <class Function>
 void for_groups(std::span<ContactRow> rows, const RowSlabs& slabs, const Function& f) {
   for (Index phase = 0; phase < RowSlabs::phases; ++phase) {

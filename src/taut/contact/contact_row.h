@@ -1,15 +1,13 @@
 #pragma once
 // One condition on the end of a step: two points of the surface, or a node and a solid, keep their
-// distance.
+// distance (docs/mathematics.md, 7.1).
 //
-//   r(x) = sum_k weight_k x_k          m, from the second point to the first: vertex against
-//                                      triangle (1, -a, -b, -c), edge against edge (1-s, s, -(1-t),
-//                                      -t), node against a plane (1)
-//   n·r(x1) >= target                  m; for a plane n·x1 >= target, n and target the plane's
-//   lambda                             kg m: h times the impulse along n, accumulated, never
-//                                      negative
-//   friction                           kg m: h times the tangential impulse, |friction| <= mu
-//                                      lambda (Coulomb)
+//   r(x) = sum_k weight_k x_k   m, from the second point to the first. Weights: vertex against
+//                               triangle (1, -a, -b, -c), edge against edge (1-s, s, -(1-t), -t),
+//                               node against a plane (1)
+//   n·r(x1) >= target           m; for a plane n·x1 >= target, n and target the plane's
+//   lambda                      kg m: h times the impulse along n, accumulated, never negative
+//   friction                    kg m: h times the tangential impulse, at most mu lambda (Coulomb)
 //
 // inverse mass of a node: 1/kg; 0 where it is held. Contact with analytic solids is a row of its
 // own, not a direction without mass: a push that is nearly along such a direction would throw the

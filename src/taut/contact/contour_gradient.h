@@ -1,21 +1,14 @@
 #pragma once
-// Where two surfaces cross, and which way to go for the crossing to become shorter.
+// Where two surfaces cross, and which way to go for the crossing to become shorter (Volino &
+// Magnenat-Thalmann 2006, "Resolving surface collisions through intersection contour minimization",
+// section 3; derivation: docs/design/untangling.md).
 //
-//   contour   the line in which surfaces cross, made of a segment for each pair of triangles. A
-//             segment ends where an edge of one triangle meets the other: each pair of an edge and
-//             a triangle that intersect (intersection.h) is the end of a segment for every face of
-//             the edge
+//   contour   the line in which surfaces cross, a segment for each pair of triangles. A segment
+//             ends where an edge of one triangle meets the other (contact/intersection.h)
 //   E, N      direction of the edge; normal of the triangle it meets
-//   R_f       unit vector along the segment, from its end into face f of the edge (orthogonal to N
-//             and to f's normal)
-//   G         sum_f R_f - 2 (E·R_f)/(E·N) N:  moving the edge by d against the triangle changes the
-//                                             contour's length at this end by
-//             -G·d / 2
-//
-// The factor 2: the end runs along the edge, so that exactly d(length) = -R·d + (E·R)/(E·N) N·d if
-// the edge moves, and (E·R)/(E·N) N·(-d) if the triangle does; the R of a segment's two ends
-// cancel, so half of each may be charged to either side. Source: Volino & Magnenat-Thalmann 2006,
-// "Resolving surface collisions through intersection contour minimization", section 3.
+//   R_f       unit vector along the segment, from its end into face f of the edge
+//   G         sum_f R_f - 2 (E·R_f)/(E·N) N: moving the edge by d against the triangle changes the
+//             contour's length at this end by -G·d/2
 //
 // As long as a contour has an end on a border, or closes around a spot that can be drawn back,
 // shrinking it to nothing separates the surfaces; it needs no history, and no notion of inside.

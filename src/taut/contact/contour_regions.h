@@ -1,6 +1,6 @@
 #pragma once
-// Spots that a contour (contour_gradient.h) cuts off from the rest of their cloth: what has gone
-// through and should come back.
+// Spots that a contour (contact/contour_gradient.h) cuts off from the rest of their cloth: what has
+// gone through and should come back.
 //
 //   cut       an edge that meets an odd number of triangles: its ends lie on different sides of the
 //             contour

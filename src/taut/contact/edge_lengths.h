@@ -1,6 +1,6 @@
 #pragma once
-// Keeps a surface's shape: the lengths of its edges within ranges, by moving nodes as little as
-// that takes.
+// Keeps a surface's shape: the lengths of its edges within ranges, by moving nodes
+// as little as that takes.
 //
 //   least, most   m, one range an edge of the surface, in its order
 //   method        position-based projection (Müller, Heidelberger, Hennix & Ratcliff 2007): an edge
@@ -17,8 +17,8 @@ struct LengthRange {
   double least = 0.0, most = 0.0;
 };
 
-// From each edge's length at x to its length at rest, whichever is greater, and `slack` (a share)
-// beyond both.
+// From each edge's length at x to its length at rest, whichever is greater, and
+// `slack` (a share) beyond both.
 std::vector<LengthRange> length_ranges(const CollisionSurface& surface, std::span<const Vec3> x,
                                        std::span<const double> rest, double slack);
 

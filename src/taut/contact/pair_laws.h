@@ -29,8 +29,8 @@ struct PairLaw {
 
 class PairLaws {
  public:
-  // At least one body. Pairs that name something else than these bodies (an analytic solid) are
-  // passed over.
+  // At least one body. Pairs that name something else than these bodies (an
+  // analytic solid) are passed over.
   PairLaws(const ContactOptions& options, std::span<const CollisionBody> bodies);
   const PairLaw& of(Index body, Index other) const {
     return laws_[static_cast<std::size_t>(body * bodies_ + other)];

@@ -54,8 +54,8 @@ void PairSearch::keep(std::span<const Pair> pairs, bool edges, bool close, Part&
   }
 }
 
-// Adds the candidates among the broad phase's pairs, and to `close` those that may be within reach
-// at the start.
+// Adds the candidates among the broad phase's pairs, and to `close` those that may be
+// within reach at the start.
 void PairSearch::add_candidates(std::span<const Vec3> x0, std::span<const std::uint8_t> moved,
                                 std::vector<CollisionPair>* close) {
   if (moved.empty()) {

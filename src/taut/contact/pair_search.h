@@ -1,12 +1,12 @@
 #pragma once
-// Which pairs are close at the start of a step, and which collide on the way: the broad phase, then
-// closest points or continuous detection. All results in a fixed order, the same for any number of
-// threads.
+// Which pairs are close at the start of a step, and which collide on the way: the broad
+// phase, then closest points or continuous detection. All results in a fixed order, the same
+// for any number of threads.
 //
-// One search serves a whole step. near() keeps the pairs that come within `reach` of each other on
-// the way to x1, the candidates: those of the broad phase that no plane keeps apart
-// (detection/clear_pairs.h). The response then changes the end of the way. Where each node's end is
-// within
+// One search serves a whole step. near() keeps the pairs that come within `reach` of each
+// other on the way to x1, the candidates: those of the broad phase that no plane keeps
+// apart (detection/clear_pairs.h). The response then changes the end of the way. Where
+// each node's end is within
 //
 //   slack = (reach - separation)/2
 //
@@ -37,8 +37,8 @@ class PairSearch {
   PairSearch(const CollisionSurface& surface, std::span<const Vec3> start)
       : broad_phase_(surface, start) {}
 
-  // Begins the search of a step from x0 to x1. Returns the pairs closer than thickness(pair) <=
-  // reach (m) at x0. reach > 0.
+  // Begins the search of a step from x0 to x1. Returns the pairs closer at x0 than
+  // thickness(pair) <= reach (m). reach > 0.
   std::vector<NearPair> near(std::span<const Vec3> x0, std::span<const Vec3> x1, double reach,
                              const std::function<double(const CollisionPair&)>& thickness);
 

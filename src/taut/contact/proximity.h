@@ -1,23 +1,18 @@
 #pragma once
 // Closest points of a point and a triangle, and of two edges.
 //
-//   point-triangle   q = wa a + wb b + wc c, weights >= 0 with sum 1:   |p - q| is least over the
-//   triangle
-//   edge-edge        r = (1 - s) a + s b,  q = (1 - t) c + t d, s and t in [0, 1]:   |r - q| is
-//   least over both edges
+//   point-triangle   |p - q| is least, q = wa a + wb b + wc c, weights >= 0 with sum 1
+//   edge-edge        |r - q| is least, r = (1 - s) a + s b, q = (1 - t) c + t d, s and t in [0, 1]
+//   distance         m
+//   normal           unit vector from q to p (to r), never NaN: orthogonal to the side or the face
+//                    that q lies in (to both edges where both points are inner ones), even where
+//                    p - q is lost in rounding. At distance 0 the triangle's (b - a) x (c - a), the
+//                    edges' (b - a) x (d - c); of shapes that have none, any orthogonal to the side
 //
-//   distance     m
-//   normal       unit vector from q to p (to r), orthogonal to the side or the face that q lies in
-//                (to both edges where both points are inner ones) even where p - q is lost in
-//                rounding. Where the distance is 0: the triangle's normal (b - a) x (c - a), the
-//                edges' (b - a) x (d - c); of shapes that have none, any unit vector orthogonal to
-//                the side. Never NaN
-//
-// Finite input is assumed; nothing is thrown. Triangles and pairs of edges with an angle below 1e-8
-// count as degenerate (as parallel): the closest pair with a side (with a corner) is then taken,
-// which is off by less than 1e-8 of their size. Edges may have no length. Closest points on lines:
-// Ericson, "Real-Time Collision Detection" (2005), 5.1; the choice between inner points and sides
-// is made by comparing.
+// Finite input is assumed. Triangles and pairs of edges with an angle below 1e-8 count as
+// degenerate (as parallel): the closest pair with a side (a corner) is taken, which is off by less
+// than 1e-8 of their size. Edges may have no length. Closest points on lines: Ericson, "Real-Time
+// Collision Detection" (2005), 5.1; the choice between inner points and sides is made by comparing.
 
 #include <array>
 

@@ -1,19 +1,17 @@
 #pragma once
-// Rigid motions of a set of nodes over one step.
+// Rigid motions of a set of nodes over one step (docs/mathematics.md, 7.6):
 //
 //   x1 = to + R (x0 - from)
+//   momentum_keeping   from and to are the centres of mass before and after, and R solves
+//                      sum m r × R r = sum m r × (x1 - to),   r = x0 - from
 //
-// momentum_keeping: from and to are the centres of mass before and after, and R solves
-//   sum m r × R r = sum m r × (x1 - to),     r = x0 - from
 // so that the average velocities (x1 - x0)/h have the linear and angular momentum that they had
-// (about any point), to rounding. It is the equation of the discrete rigid body (Moser & Veselov
-// 1991); Bridson et al. 2002 turn by ω h with I ω = L, which keeps it to first order in the angle
-// only. It has no solution beyond about 90°: R is then the turn by ω h, cut at one radian, and
-// `exact` is false.
+// (about any point), to rounding: the discrete rigid body (Moser & Veselov 1991). Bridson et al.
+// 2002 turn by ω h with I ω = L, which keeps it to first order in the angle only. There is no
+// solution beyond about 90°: R is then the turn by ω h, cut at one radian, and `exact` is false.
 //
-// Interpolated linearly, x0 + t (x1 - x0), a rigid motion by less than 180° is an affine map with
-// an inverse at every t: points of the set never meet on the way, and their distances shrink by
-// cos(angle/2) at most.
+// Interpolated linearly, a rigid motion by less than 180° is an affine map with an inverse at every
+// t: points of the set never meet on the way, and their distances shrink by cos(angle/2) at most.
 
 #include <optional>
 #include <span>

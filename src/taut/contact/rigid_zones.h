@@ -3,16 +3,15 @@
 // (Provot 1997; Bridson, Fedkiw & Anderson 2002, section 7.4; paper Section 7). The last resort: it
 // holds since nothing meets inside a body that moves rigidly.
 //
-//   zone         nodes joined by pairs that collide; zones that share a pair merge
-//   attachment   a point that the zone must carry along: a held node (pinned, or of a solid's
-//                mesh), from where it is at the start to where
-//   it ends;
-//                or a node that would end inside an analytic solid, which then rides with it. They
-//                count as infinitely heavy: a zone that has some moves as they do, and keeps no
-//                momentum; one that has none keeps linear and angular momentum (rigid_motion.h)
+//   zone           nodes joined by pairs that collide; zones that share a pair merge
+//   attachment     a point that the zone must carry along: a held node (pinned, or of a solid's
+//                  mesh), from where it is at the start to where it ends; or a node that would end
+//                  inside an analytic solid, which then rides with it
 //   contradiction  attachments that no rigid motion fits: the zone is pinched
 //
-// Held nodes join no zone: two zones on one solid stay two.
+// Attachments count as infinitely heavy: a zone that has some moves as they do, and keeps no
+// momentum; one that has none keeps linear and angular momentum (contact/rigid_motion.h). Held
+// nodes join no zone: two zones on one solid stay two.
 
 #include <map>
 #include <optional>

@@ -11,8 +11,8 @@ constexpr Index slabs = RowSlabs::slabs, boundaries = slabs - 1, even_boundaries
 constexpr Index rest = slabs + boundaries, on_solids = rest + 1, late = on_solids + slabs;
 static_assert(late + 1 == RowSlabs::groups);
 
-// Slabs of vertices by their coordinate along one axis. Bins, so that no coordinate needs to be
-// sorted.
+// Slabs of vertices by their coordinate along one axis. Bins, so that no
+// coordinate needs to be sorted.
 class Slabs {
  public:
   Slabs(std::span<const RowSlabs::Vertices> rows, std::span<const Vec3> x) : x_(x) {

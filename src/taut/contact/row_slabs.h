@@ -1,10 +1,7 @@
 #pragma once
 // In which order rows are met, and which of them at the same time: those that share no vertex.
-//
-// Space is cut into slabs, across the axis along which the rows reach farthest, so that as many
-// rows begin in each. A row belongs to the slab that holds all its vertices, or to the boundary of
-// the two slabs that do, or to the rest. Rows of two slabs share nothing; nor do those of two
-// boundaries with a whole slab between them.
+// Space is cut into slabs across one axis; a row belongs to the slab that holds all its vertices,
+// or to the boundary of the two slabs that do, or to the rest.
 //
 //   phase 0   one group a slab
 //   phase 1   one group a boundary 0|1, 2|3, ...
@@ -13,13 +10,9 @@
 //   phase 4   one group a slab: rows of one vertex and a solid
 //   phase 5   one group: rows that came later, of collisions
 //
-// Groups of a phase may run side by side, each in its order; phases one after another. What must
-// hold comes last, since nothing moves it after: what ends inside a solid, or still collides, costs
-// another sweep. Few slabs: Gauss-Seidel carries a push through a stack in one round along the
-// rows' own order, which boundaries interrupt. Measured on clump, 25,921 nodes: with 4 slabs the
-// state after five steps is as good as with one; with 16 there are a third more sweeps.
-//
-// Groups depend on rows and positions only. Few rows are one slab.
+// Groups of a phase may run side by side, each in its order; phases one after another. Groups
+// depend on rows and positions only. Few rows are one slab. Why few slabs, and this order:
+// docs/design/cloth-contact.md.
 
 #include <array>
 #include <span>

@@ -15,8 +15,8 @@
 
 namespace taut {
 
-// The plane n·y = n·e - gap of world points y, near the point e that it was made for. n has length
-// 1.
+// The plane n·y = n·e - gap of world points y, near the point e that it was
+// made for. n has length 1.
 struct LandingPlane {
   Vec3 normal = Vec3::UnitZ();
   double gap = 0.0;
@@ -32,16 +32,16 @@ class SolidStep {
   bool meets(const Vec3& x0, const Vec3& x1, double largest_gap) const;
   double start_gap(const Vec3& x) const { return gap(start_local(x)); }
   double end_gap(const Vec3& x) const { return gap(end_local(x)); }
-  // First touch of that path. A start gap within `touch_tolerance` counts as touching from the
-  // start.
+  // First touch of that path. A start gap within `touch_tolerance` counts as
+  // touching from the start.
   Vec3 anchor(const Vec3& x0, const Vec3& x1, double touch_tolerance) const;
   // Where the solid's motion takes a local point by t + h.
   Vec3 carried(const Vec3& local) const { return end_rotation_ * local + end_translation_; }
   // The same for a world point at the start.
   Vec3 carried_from(const Vec3& x0) const { return carried(start_local(x0)); }
-  // Tangent plane at the surface point nearest to x1 at the end; where x1 has gone so deep (or
-  // through) that this would be a face on another side than the anchor's, the tangent plane at the
-  // anchor.
+  // Tangent plane at the surface point nearest to x1 at the end; where x1 has gone so
+  // deep (or through) that this would be a face on another side than the anchor's, the
+  // tangent plane at the anchor.
   LandingPlane landing(const Vec3& x1, const Vec3& anchor) const;
   // Outward world normal at the end pose of a point on the surface.
   Vec3 end_normal(const Vec3& local) const {
@@ -61,8 +61,8 @@ class SolidStep {
     return surface_distance(*solid_, local) - solid_->thickness;
   }
   Vec3 onto_surface(const Vec3& local) const;
-  // Some share of the path q0 -> q1 whose gap is below `depth`, or a negative number when there is
-  // none.
+  // Some share of the path q0 -> q1 whose gap is below `depth`, or a negative
+  // number when there is none.
   double share_inside(const Vec3& q0, const Vec3& q1, double depth) const;
 
   const Solid* solid_;

@@ -1,23 +1,17 @@
 #pragma once
 // Draws cloth that intersects itself, other cloth or solids apart, from positions only: no history,
-// no velocities.
+// no velocities. How: docs/design/untangling.md; docs/mathematics.md, 7.9.
 //
-//   1  separate  passes until the exact check (intersection.h) finds nothing: nodes at a contour
-//                move down the gradient of its length (contour_gradient.h), whole spots go back the
-//                way they came (contour_regions.h), nodes inside analytic solids go to the nearest
-//                point of the surface, and the edges' lengths are projected back (edge_lengths.h)
-//   2  settle    free of intersections, it is kept so: rounds of ClothContact::resolve
-//                (cloth_contact.h) without friction push layers to their thickness apart and
-//                restore lengths, each on a way that is proved free
+//   separate   passes that shrink contours until the exact check (contact/intersection.h) finds
+//              nothing
+//   settle     rounds of ClothContact::resolve without friction, which push layers apart and
+//              restore the edges' lengths, on ways that are proved free
 //
 // Separation may end in a minimum that is not zero: a ring that another cloth passes through, two
-// sheets crossed from border to border, cloth inside a closed mesh. Several ways of stepping are
-// tried from the same start, each up to `most_passes` passes. What cannot be repaired with edges at
-// most `most_excess` outside the range between what they are and their rest length is given back as
-// it was.
-//
-// Deterministic: the same bits for any number of threads. Time: a pass costs one exact check and a
-// few loops over edges.
+// sheets crossed from border to border, cloth inside a closed mesh. What cannot be repaired with
+// edges at most `most_excess` outside the range between what they are and their rest length is
+// given back as it was. Deterministic: the same bits for any number of threads. A pass costs one
+// exact check and a few loops over edges.
 
 #include "taut/base/status.h"
 #include "taut/contact/cloth_contact.h"

@@ -45,8 +45,8 @@ void add_gradients(std::span<const ContourEnd> ends, double step,
   }
 }
 
-// At their rims, which also moves what they have gone through, and where a spot is a solid's, only
-// that.
+// At their rims, which also moves what they have gone through, and where a spot
+// is a solid's, only that.
 void add_spots(std::span<const ContourEnd> ends, const ContourRegions& regions, double step,
                std::span<const std::uint8_t> held, Field& field) {
   for (const ContourEnd& end : ends)

@@ -1,6 +1,6 @@
 #pragma once
-// The first half of untangle.h: passes that draw surfaces through one another until nothing
-// intersects.
+// The first half of untangle.h: passes that draw surfaces through one another
+// until nothing intersects.
 
 #include "taut/contact/contour_gradient.h"
 #include "taut/contact/edge_lengths.h"
@@ -19,8 +19,8 @@ struct SeparationResult {
   std::vector<Intersection> left;  // at the pass with the fewest
 };
 
-// Nodes deeper than `tolerance` (m) inside a solid; moved to the nearest place outside if `x` is to
-// be changed.
+// Nodes deeper than `tolerance` (m) inside a solid; moved to the nearest place outside
+// if `x` is to be changed.
 Index push_out_of_solids(const UntangleInput& input, std::span<Vec3> x, double tolerance);
 Index count_inside_solids(const UntangleInput& input, std::span<const Vec3> x, double tolerance);
 

@@ -1,7 +1,7 @@
 #pragma once
-// The second half of untangle.h: from a state without intersections to one with room between layers
-// and with the lengths of edges restored, by rounds of contact's own response, which never lets it
-// get any.
+// The second half of untangle.h: from a state without intersections to one with room
+// between layers and with the lengths of edges restored, by rounds of contact's own
+// response, which never lets it get any.
 
 #include "taut/contact/edge_lengths.h"
 #include "taut/contact/untangle.h"

@@ -1,9 +1,9 @@
 #pragma once
 // Puts the force models' elements together into A (3x3 blocks) and the right-hand side.
 //
-//   A_ij = sum of the matrix blocks of the elements that couple i and j  +  δ_ij (m_i mass +
-//   external * D_ext,i)
-//   b_i  = sum of the elements' vectors
+//   A_ij   sum of the matrix blocks of the elements that couple i and j,
+//          and for i = j also m_i mass + external D_ext,i
+//   b_i    sum of the elements' vectors at i
 //
 // The pattern is that of the *implicit* models (IMEX leaves shear and bend out: the "thin matrix")
 // and is built once. Each step, elements are evaluated in parallel into flat arrays and then

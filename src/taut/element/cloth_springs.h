@@ -1,9 +1,10 @@
 #pragma once
 // Which nodes of a cloth are joined by springs.
 //
-//   Provot grid (Provot 1995): each node has up to 12 neighbours: 4 stretch (grid edges), 4 shear
-//   (cell diagonals), 4 bend (two nodes apart along a line) triangle mesh: stretch on each edge,
-//   bend across each interior edge (the two opposite vertices), no separate shear
+//   grid    up to 12 neighbours a node: 4 stretch (grid edges), 4 shear (cell diagonals), 4 bend
+//           (two nodes apart along a line); Provot 1995
+//   mesh    stretch on each edge, bend across each interior edge (between the two opposite
+//           vertices), no separate shear
 //
 // Rest lengths (m) are the distances in `rest`. Node numbers are shifted by `first_node`, so that
 // several cloths share one system. A spring of rest length 0 is refused (InputError naming the

@@ -2,15 +2,14 @@
 // Forces from outside the cloth: gravity, air drag and wind. They are block diagonal: each node's
 // force depends on its own velocity only.
 //
-//   gravity        f_i = m_i g
-//   g m/s²
-//   drag           f_i = -c_i (v_i - w),  D_i = c_i I
-//   c_i kg/s, w the wind m/s
-//   wind pressure  each triangle of area A and unit normal n gives each of its nodes  (c A/3) n nᵀ
-//   (w - v_i),  D_i = (c A/3) n nᵀ
-//                  c kg/(m² s): a linearised pressure on the side that faces the wind; D_i is exact
-//                  in v_i and positive semidefinite
+//   gravity        f_i = m_i g                          g in m/s²
+//   drag           f_i = -c_i (v_i - w),  D_i = c_i I   c_i in kg/s, w the wind in m/s
+//   wind pressure  f_i = (c A/3) n nᵀ (w - v_i),        c in kg/(m² s); of each triangle, area A,
+//                  D_i = (c A/3) n nᵀ                   unit normal n, on each of its nodes
 //   wind           w(t) = W (1 + gust sin(2π f t))
+//
+// Wind pressure is a linearised pressure on the side that faces the wind; its D_i is exact in v_i
+// and positive semidefinite.
 
 #include "taut/base/types.h"
 #include "taut/mesh/triangle_mesh.h"

@@ -1,16 +1,10 @@
 #pragma once
 // A force model: many small elements of the same kind (springs now), each coupling the nodes of its
-// stencil.
-//
-//   sign rule  f = -grad E,   K = -df/dx (as used: positive semidefinite),   D = -df/dv          N,
-//   N/m, N s/m
-//
-// A model is asked for combinations rather than for f, K and D one by one, so that each element is
-// visited once a step:
+// stencil. Sign rule: f = -grad E (N), K = -df/dx as used, positive semidefinite (N/m), D = -df/dv
+// (N s/m). A model is asked for combinations, so that each element is visited once a step:
 //
 //   matrix block   damping * D + stiffness * K
-//   vector         force * f + (K p) + (D q)              p, q: node fields chosen by the
-//                                                         integrator
+//   vector         force * f + K p + D q         p, q: node fields chosen by the integrator
 //
 // It hands out its numbers in two flat arrays; where they go in the matrix, with which sign, it
 // says once, in `connect`. The assembler gathers them row by row, which is parallel and gives the

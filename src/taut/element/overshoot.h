@@ -3,9 +3,9 @@
 // along its direction e at the start of the step and knows nothing of the spring turning; a slack
 // spring of the buckling law has no stiffness at all. What a spring ends longer than that:
 //
-//   foreseen   e·d1 when the spring had stiffness at the start (d1 = x_j - x_i at the end), else L0
-//   m
-//   overshoot  max(|d1| - max(foreseen, L0), 0) / L0
+//   d1          x_j - x_i at the end, m
+//   foreseen    e·d1 when the spring had stiffness at the start, else L0, m
+//   overshoot   max(|d1| - max(foreseen, L0), 0) / L0
 //
 // It shrinks with the square of the step size (turning), or linearly (a slack spring pulled taut).
 

@@ -51,8 +51,8 @@ double beam_energy(const SpringParameters& p, double u) {
 }  // namespace
 
 BeamRange beam_range(const SpringParameters& p) {
-  // L/L0 where the beam pushes least in proportion to L0 - L. A line that is weaker there is weaker
-  // everywhere.
+  // L/L0 where the beam pushes least in proportion to L0 - L. A line that is weaker
+  // there is weaker everywhere.
   constexpr double weakest = 0.27948525989761236;
   const auto beam_is_weaker = [&](double length) {
     return buckled_beam(p, length).tension >= p.cap * (length - p.rest_length);

@@ -1,25 +1,19 @@
 #pragma once
 // The law of one spring between nodes i and j (docs/mathematics.md, 2; Provot 1995; Choi & Ko
-// 2002):
+// 2002). With d = x_j - x_i, L = |d|, e = d/L, rest length L0 (m):
 //
-//   d = x_j - x_i,  L = |d|,  e = d/L,  L0 rest length                                        m
-//   force on i   f_i = T(L) e + k_d e eᵀ (v_j - v_i),   f_j = -f_i                            N
-//   exact        -df_i/dx_i (elastic) = T'(L) e eᵀ + T(L)/L (I - e eᵀ)                        N/m
-//   used         K_s = T' e eᵀ + max(T/L, 0) (I - e eᵀ): the transverse term of a compressed spring
-//                is dropped
-//   D_s = k_d e eᵀ; d(damping force)/dx is dropped. A slack spring (no force) does not damp.  N s/m
+//   force    f_i = T(L) e + k_d e eᵀ (v_j - v_i),  f_j = -f_i                            N
+//   exact    -df_i/dx_i = T'(L) e eᵀ + T(L)/L (I - e eᵀ), of the elastic part            N/m
+//   used     K_s = T' e eᵀ + max(T/L, 0) (I - e eᵀ), without the transverse term of a
+//            compressed spring; D_s = k_d e eᵀ, whose change with x is dropped           N/m, N s/m
 //
-// Laws T(L), with k the stiffness:
-//   linear      T = k (L - L0)                                   both ways
-//   buckling    the same for L >= L0, nothing below              stretch and shear, Choi & Ko's
-//                                                                type 1
-//   choi_ko     c_b (L - L0) for L >= L0; below, the beam of flexural rigidity k_b (N·m²) buckled
-//               into an arc:
-//                   sinc(u) = L/L0, κ = 2u/L0, f_b = k_b κ² / (cos u - sinc u)   (< 0, it pushes),
-//                   energy ½ k_b κ² L0,
-//               replaced near L0 by the line c_b (L - L0) where f_b is the stronger push (Choi &
-//               Ko's type 2)
-// A collapsed spring (L = 0) gives nothing.
+//   linear     T = k (L - L0)                    both ways
+//   buckling   the same for L >= L0, else 0      stretch and shear: Choi & Ko's type 1
+//   choi_ko    c_b (L - L0) for L >= L0; below, the weaker push of that line and of the beam of
+//              flexural rigidity k_b (N·m²) buckled into an arc: sinc(u) = L/L0, κ = 2u/L0,
+//              T = k_b κ² / (cos u - sinc u) < 0, energy ½ k_b κ² L0      Choi & Ko's type 2
+//
+// A spring that is slack does not damp; a collapsed one (L = 0) gives nothing.
 
 #include "taut/base/types.h"
 
@@ -69,8 +63,8 @@ struct SpringResponse {
   Mat3 dropped_damping = Mat3::Zero();     // -d(damping force)/dx, dropped
   Mat3 exact_stiffness() const { return stiffness + dropped_transverse + dropped_damping; }
 };
-// The readable form, for tests, dumps and small tools; springs.cpp evaluates the same formulas in
-// bulk.
+// The readable form, for tests, dumps and small tools; element/spring_model.cpp evaluates
+// the same formulas in bulk.
 SpringResponse spring_response(SpringLawKind law, const SpringParameters& p, const Vec3& d,
                                const Vec3& relative_velocity);
 

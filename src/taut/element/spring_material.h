@@ -1,10 +1,9 @@
 #pragma once
-// Material of a mass-spring cloth (Provot 1995; Choi & Ko 2002). docs/mathematics.md, 2; kernels in
-// element/spring_law.h.
+// Material of a mass-spring cloth (Provot 1995; Choi & Ko 2002). docs/mathematics.md, 2; kernels
+// in element/spring_law.h.
 //
 //   k_stretch, k_shear  N/m a spring
-//   k_bend              N/m a spring with bend_model linear; N·m² (a flexural rigidity) with
-//                       choi_ko
+//   k_bend              bend_model linear: N/m a spring; choi_ko: N·m², a flexural rigidity
 //   k_damp_*            N·s/m a spring, along the spring
 //   bend_cap            c_b of Choi & Ko, N/m: slope of the line that caps the buckled force near
 //                       the rest length; 0 means k_stretch

@@ -1,6 +1,6 @@
 #pragma once
-// Files of continuous-collision queries, in the form of the data sets of Wang et al. 2021
-// (contact/ccd.h).
+// Files of continuous-collision queries, in the form of the data sets of Wang et
+// al. 2021 (contact/ccd.h).
 //
 //   eight rows a query    x y z of its corners: four at t = 0, then the same four at t = 1
 //   a row                 x_num,x_den,y_num,y_den,z_num,z_den[,truth]

@@ -1,29 +1,16 @@
 #pragma once
-// Matrix Market files: sparse matrices ("coordinate"), dense ones and vectors ("array"), as text.
+// Matrix Market files: sparse matrices ("coordinate"), dense ones and vectors ("array"), as text
+// (Boisvert, Pozo, Remington, "The Matrix Market exchange formats: initial design", NISTIR 5935,
+// 1996). What is read, and how strictly: docs/design/readers.md.
 //
-//   %%MatrixMarket matrix coordinate real symmetric      object matrix | vector, format coordinate
-//                                                        | array,
-//   % comments                                           field real | double | integer | pattern,
-//                                                        symmetry general | symmetric |
-//   rows columns entries                                 skew-symmetric; upper or lower case; one %
-//                                                        in front is accepted
-//   row column value                                     counted from 1; no value where the field
-//                                                        is pattern (it is 1 then)
+//   object      matrix, vector
+//   format      coordinate, array
+//   field       real, double, integer, pattern
+//   symmetry    general, symmetric, skew-symmetric
 //
-// Source: Boisvert, Pozo, Remington, "The Matrix Market exchange formats: initial design", NISTIR
-// 5935 (1996).
-//
-// Reading: blank lines and comments may stand anywhere, LF, CRLF or CR, gzip (.mtx.gz). Entries
-// with the same row and column are added. A symmetric file may hold the lower triangle (as the
-// format says) or only the upper one; a file with entries in both is refused, because it does not
-// say whether they are the same. Integers beyond 2^53 are rounded to the nearest double. Refused
-// with InputError that names file, line and column: complex and Hermitian matrices, `array
-// pattern`, a missing, surplus or unreadable number, NaN, infinity and what is beyond double, an
-// index outside the matrix, fewer or more entries than announced. Time is O(n log n), memory linear
-// in the size of the file, whatever its header announces.
-//
-// Writing goes through a temporary file and uses the shortest decimals that read back to the same
-// doubles (17 digits at most).
+// Throws InputError that names file, line and column. Time is O(n log n), memory linear in the size
+// of the file, whatever its header announces. Writing goes through a temporary file and uses the
+// shortest decimals that read back to the same doubles (17 digits at most).
 
 #include <filesystem>
 #include <span>

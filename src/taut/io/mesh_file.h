@@ -1,6 +1,6 @@
 #pragma once
-// A mesh from a file, by its extension: .obj (io/obj.h) or .ply (io/ply.h), also gzip'd with .gz
-// after it; .usd, .usda, .usdc or .usdz (io/usd.h).
+// A mesh from a file, by its extension: .obj (io/obj.h) or .ply (io/ply.h), also compressed, with
+// .gz after it; .usd, .usda, .usdc or .usdz (io/usd.h).
 
 #include <filesystem>
 #include <string>

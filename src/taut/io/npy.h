@@ -1,9 +1,8 @@
 #pragma once
 // NumPy arrays in .npy files: numpy.load(path) reads what is written here.
 //
-//   T        float (<f4), double (<f8), std::int32_t (<i4), little-endian, or std::uint8_t (|u1)
-//   shape    any number of axes, the last one fastest (C order); the values are shape[0] x shape[1]
-//            x ... numbers
+//   T       float (<f4), double (<f8), std::int32_t (<i4), little-endian, or std::uint8_t (|u1)
+//   shape   any number of axes, the last one fastest (C order): shape[0] x shape[1] x ... values
 //
 // Source: NumPy, "numpy.lib.format", version 1.0 of the file format (versions 2.0 and 3.0 are read
 // too). Written through a temporary file; throws InputError when that fails. Reading throws

@@ -1,6 +1,7 @@
 #pragma once
-// The header of a .npy file: a Python dictionary such as {'descr': '<f4', 'fortran_order': False,
-// 'shape': (9, 3), }
+// The header of a .npy file, a Python dictionary:
+//
+//   {'descr': '<f4', 'fortran_order': False, 'shape': (9, 3), }
 
 #include <cstdint>
 #include <string>

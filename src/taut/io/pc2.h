@@ -1,23 +1,16 @@
 #pragma once
-// PC2 point caches: the positions of a mesh's vertices over time, for Blender, Maya, Houdini and
-// others; the mesh itself goes into an OBJ.
-//
-//   header, 32 bytes little-endian:  "POINTCACHE2\0", int32 version = 1, int32 points, float
-//                                    start_frame, float sample_rate, int32 samples
-//   then for each sample             points x 3 float32: x y z of each vertex in the mesh's order,
-//                                    m
-//
-// sample_rate = frames between two samples (1: a sample a frame). Source: the 3ds Max PC2 format as
+// PC2 point caches: the positions of a mesh's vertices over time, for Blender, Maya,
+// Houdini and others; the mesh itself goes into an OBJ. Source: the 3ds Max PC2 format as
 // Blender's Mesh Cache reads it.
 //
-// Written: samples go to a temporary file beside `path` as they come; finish() fills in their
-// number and renames it, so a reader never sees half a cache. A writer that is destroyed before
-// finish() removes the temporary file. Throws InputError naming the file when it cannot be written.
+//   header        32 bytes, little-endian: "POINTCACHE2\0", int32 version = 1, int32 points, float
+//                 start_frame, float sample_rate, int32 samples
+//   each sample   points x 3 float32: x y z of each vertex in the mesh's order, m
+//   sample_rate   frames between two samples (1: a sample a frame)
 //
-// Read: all samples at once, 24 bytes a point and sample. Throws InputError naming the file, and
-// sample and point where there is one, when it is no PC2 file of version 1, is shorter or longer
-// than its header says, holds no point or no sample, a sample_rate that is not positive, or a
-// coordinate that is not finite; memory is bounded by the file's size.
+// A reader never sees half a cache: samples go to a temporary file as they come, which finish()
+// renames. Read are all samples at once, 24 bytes a point and sample. Throws InputError naming the
+// file, and sample and point where there is one (docs/design/readers.md says for what).
 
 #include <filesystem>
 #include <fstream>

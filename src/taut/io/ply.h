@@ -1,20 +1,15 @@
 #pragma once
-// PLY meshes ("Stanford" polygon files), text and binary.
+// PLY meshes ("Stanford" polygon files), text and binary (G. Turk, "The PLY
+// Polygon File Format", 1994).
 //
-// Read: the elements `vertex` with x, y, z (any numeric type), texture coordinates s, t or u, v or
-// texture_u, texture_v when there are any, and `face` with a list vertex_indices or vertex_index;
-// polygons are cut into fans of triangles (io/polygon_fan.h). Other elements and properties are
-// passed over. LF, CRLF or CR; gzip. Vertices keep the file's order. Written: binary little-endian,
-// float32 x, y, z, s and t when there are texture coordinates, faces as uchar, int.
+//   vertex   x, y, z of any numeric type; texture coordinates s, t or u, v or texture_u, texture_v
+//   face     a list vertex_indices or vertex_index; polygons are cut into fans (io/polygon_fan.h)
 //
-// Source: G. Turk, "The PLY Polygon File Format", 1994. Why an own reader: rply and miniply give up
-// without saying where.
-//
-// Throws InputError, in text with line and column, in binary files with the number of vertex or
-// face (from 0) and the byte, for: a header that is none; numbers missing, not finite or of the
-// wrong kind; a face with fewer than three corners or with an index beyond the vertices; a file
-// that ends early; no vertices or no faces. Time and memory are linear in the size of the file,
-// whatever its header claims.
+// Other elements and properties are passed over. LF, CRLF or CR; gzip. Vertices keep the file's
+// order. Written: binary little-endian, float32 x, y, z, s and t when there are texture
+// coordinates, faces as uchar, int. Throws InputError, in text with line and column, in binary
+// files with the number of vertex or face (from 0) and the byte. Time and memory are linear in the
+// size of the file, whatever its header claims. What is refused: docs/design/readers.md.
 
 #include <filesystem>
 #include <string>

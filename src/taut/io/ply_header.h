@@ -1,8 +1,8 @@
 #pragma once
 // The header of a PLY file: which elements follow, with which properties. Only for io/ply.h.
 //
-// Source: G. Turk, "The PLY Polygon File Format", 1994; type names also as int8, uint8, ...,
-// float64.
+// Source: G. Turk, "The PLY Polygon File Format", 1994; type names also as
+// int8, uint8, ..., float64.
 
 #include <cstdint>
 #include <string>

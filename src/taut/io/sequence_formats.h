@@ -1,6 +1,6 @@
 #pragma once
-// The makers of the writers, one a format, for the list in sequence_formats.cpp. Others use
-// io/sequence_writer.h.
+// The makers of the writers, one a format, for the list in sequence_formats.cpp. Others
+// use io/sequence_writer.h.
 
 #include "taut/io/sequence_writer.h"
 

@@ -2,8 +2,8 @@
 // coordinates once, points and extent at every frame, for what does not move once. The time code is
 // the frame's number, timeCodesPerSecond makes seconds of it.
 //
-// Source: OpenUSD 24, "USD file format: text", schemas UsdGeomMesh, UsdGeomPointBased,
-// UsdGeomGprim.
+// Source: OpenUSD 24, "USD file format: text", schemas UsdGeomMesh,
+// UsdGeomPointBased, UsdGeomGprim.
 #include <Eigen/Geometry>
 #include <ostream>
 

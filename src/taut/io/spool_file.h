@@ -11,8 +11,8 @@ namespace taut {
 
 class SpoolFile {
  public:
-  // In `folder`, which is made if missing. Throws InputError when that cannot be written; so do the
-  // others.
+  // In `folder`, which is made if missing. Throws InputError when that cannot be
+  // written; so do the others.
   explicit SpoolFile(const std::filesystem::path& folder);
   ~SpoolFile();
   SpoolFile(const SpoolFile&) = delete;

@@ -77,8 +77,8 @@ class SystemMatrixBuilder {
   }
 
   void check_diagonal() {
-    // Before any memory for `rows_` rows is taken: a header may announce millions of rows and hold
-    // none.
+    // Before any memory for `rows_` rows is taken: a header may announce
+    // millions of rows and hold none.
     std::vector<double> found;
     for (const MatrixEntry& entry : entries_) {
       if (entry.row != entry.column) continue;
@@ -92,8 +92,8 @@ class SystemMatrixBuilder {
     diagonal_ = std::move(found);
   }
 
-  // Stores (a_ij + a_ji) / 2 in both places after checking that they agree; exact where they are
-  // equal.
+  // Stores (a_ij + a_ji) / 2 in both places after checking that they agree;
+  // exact where they are equal.
   void check_symmetry() {
     std::vector<MatrixEntry> mirrored(entries_);
     for (MatrixEntry& entry : mirrored) std::swap(entry.row, entry.column);

@@ -1,10 +1,10 @@
 #pragma once
-// Groups of neighbouring nodes for algebraic multigrid (Vaněk, Mandel & Brezina 1996, algorithm
-// 5.1):
+// Groups of neighbouring nodes for algebraic multigrid (Vaněk, Mandel &
+// Brezina 1996, algorithm 5.1):
 //
-//   1. a node whose neighbours are all free founds a group with them, in the order of the nodes
-//   2. a node left over joins the group of its strongest neighbour of those grouped in 1
-//   3. what is still left is grouped with its neighbours that are left
+//   1   a node whose neighbours are all free founds a group with them, in the order of the nodes
+//   2   a node left over joins the group of its strongest neighbour of those grouped in 1
+//   3   what is still left is grouped with its neighbours that are left
 //
 // No random numbers: the same groups every time.
 

@@ -1,7 +1,7 @@
 #pragma once
-// One level of smoothed aggregation with its way to the next: nodes of n unknowns here, of c below.
-// See linalg/smoothed_aggregation.h. Blocks of nodes with fewer unknowns are padded: zeros, ones on
-// the diagonal.
+// One level of smoothed aggregation with its way to the next: nodes of n unknowns here, of c
+// below. See linalg/smoothed_aggregation.h. Blocks of nodes with fewer unknowns are padded:
+// zeros, ones on the diagonal.
 
 #include <Eigen/Cholesky>
 #include <cmath>
@@ -128,8 +128,8 @@ struct AmgLevel {
     return result;
   }
 
-  // P̂ and the coarse level's modes: modes = P̂ coarse_modes, the columns of P̂ orthonormal or
-  // zero.
+  // P̂ and the coarse level's modes: modes = P̂ coarse_modes, the columns
+  // of P̂ orthonormal or zero.
   BlockSparse<n, c> tentative(const Aggregation& groups,
                               std::vector<CoarseModes>& coarse_modes) const {
     BlockSparse<n, c> result;
@@ -145,8 +145,8 @@ struct AmgLevel {
     return result;
   }
 
-  // Modified Gram-Schmidt, twice, so that what is left of a nearly dependent column is orthogonal
-  // too.
+  // Modified Gram-Schmidt, twice, so that what is left of a nearly dependent
+  // column is orthogonal too.
   static void orthonormalize(const std::vector<Index>& members, std::vector<Modes>& q,
                              CoarseModes& r) {
     const auto column_dot = [&](int s, int t) {

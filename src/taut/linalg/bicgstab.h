@@ -2,9 +2,9 @@
 // BiCGSTAB (van der Vorst 1992) for a nonsymmetric A with a right preconditioner. Used for the
 // paper's Eq. 10.
 //
-//   stop when |b - A x| <= tolerance |b| (Euclidean norm of the true residual: it is recomputed
-//   before success is reported)
+//   stop when |b - A x| <= tolerance |b|
 //
+// The norm is Euclidean and the residual the true one: it is recomputed before success is reported.
 // Two products and two preconditioner applications an iteration. When the recurrence breaks down or
 // its residual drifts from the true one, it starts afresh from the current x; after `max_restarts`
 // without progress the outcome is breakdown.

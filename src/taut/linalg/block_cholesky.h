@@ -1,48 +1,18 @@
 #pragma once
-// Taut's own sparse Cholesky factorisation P A Pᵀ = L Lᵀ for matrices made of small blocks, one per
-// node (cloth: 3x3; scalar matrices: 1x1).
+// Taut's own sparse Cholesky factorisation P A Pᵀ = L Lᵀ for matrices of small blocks, one per node
+// (cloth: 3x3; scalar matrices: 1x1). How and why: docs/design/block-cholesky.md.
 //
-//   analyze     nodes of few neighbours that share no block, to be eliminated first and by
-//               themselves (block_cholesky/condensation.h); of the others' graph nested dissection,
-//               elimination tree, supernodes; all memory planned: once per topology
-//   factorize   multifrontal, dense SIMD kernels chosen for the machine, parallel over the tree and
-//               inside its upper fronts
-//   solve       forward and backward, double vectors in and out whatever the precision of L; x =
-//               A⁻¹ b up to that precision
-//
-// Constraints come and go, the analysis stays: after analyze(pattern), factorize(A) takes any
-// matrix whose nodes are those of the pattern with the same or fewer unknowns each (3, 2, 1 or 0)
-// and whose blocks are among the pattern's; blocks may be missing. Missing unknowns are eliminated
-// as the identity, so the cost is that of the full pattern. b and x are numbered as the unknowns of
-// that A.
-//
-// Without copies: factorize(A, basis) takes the analysed blocks of Qᵀ A Q (linalg/node_basis.h)
-// straight from A, and
-//
-//   solve_forward    y = L⁻¹ P Qᵀ b; returns yᵀy, which is rᵀ M⁻¹ r of conjugate gradients
-//                    preconditioned by that part, for r = b
+//   analyze          order, tree and memory, once per topology; with a mask, of part of the blocks
+//   factorize        the numbers; multifrontal, SIMD kernels chosen for the machine, parallel
+//   solve            x = A⁻¹ b: double vectors, up to the precision of L
+//   solve_forward    y = L⁻¹ P Qᵀ b, returns yᵀy     Q: linalg/node_basis.h
 //   solve_backward   x = beta x + Q Pᵀ L⁻ᵀ y
 //
-// have A's unknowns on both sides. With a mask in analyze, those blocks are a part of A (the matrix
-// core): A itself is never taken apart. The order is that part's own. Blocks outside it that have a
-// place in its factor anyway, by fill-in, can be taken in for nothing. The first forward solve
-// costs next to nothing when factorize does it on the way.
-//
-// Precision: `single` halves the memory that the solves read and doubles the speed of the
-// arithmetic; meant for preconditioners. Subnormal numbers count as zero (base/flush_subnormals.h),
-// so a matrix in single precision should not be smaller than 1e-30 throughout. `automatic` begins
-// in single precision and factorises again in double precision when a pivot fails, which statistics
-// count.
-//
-// Outcomes: not_positive_definite and not_finite name the first unknown, in the order of
-// elimination, whose pivot is not a positive finite number, and its node. A pattern that does not
-// fit the analysis: breakdown.
-//
-// Same bits for any number of threads. After the first of each, factorize and solve allocate
-// nothing as long as pattern and number of threads stay.
-//
-// Sources: Liu 1992, SIAM Review 34 (multifrontal method); Davis 2006, Direct Methods for Sparse
-// Linear Systems (trees, counts); Karypis & Kumar 1998 (METIS).
+// After analyze(pattern), factorize(A) takes any A whose nodes have the same or fewer unknowns and
+// whose blocks are among the pattern's. A bad pivot is not_positive_definite or not_finite and
+// names its unknown and node; a pattern that does not fit the analysis is breakdown. In single
+// precision subnormal numbers count as zero: A should not be smaller than 1e-30 throughout. Same
+// bits for any number of threads; nothing is allocated after the first of each call.
 
 #include "taut/base/task_tree.h"
 #include "taut/linalg/node_basis.h"
@@ -51,8 +21,8 @@
 
 namespace taut {
 
-// Of the pattern's blocks that the mask leaves out: all of them, or only those without a place in
-// the factor.
+// Of the pattern's blocks that the mask leaves out: all of them, or only those
+// without a place in the factor.
 enum class BlocksLeftOut { all_outside_mask, without_place };
 
 // What becomes of blocks of A that are not factorised.
@@ -61,13 +31,16 @@ struct BlocksOutside {
   // takes the springs out that made them, where else their part of the diagonal would stay. For
   // symmetric 3x3 blocks.
   bool lumped = false;
-  // With lumped: those that BlockCholesky::parallelograms() has are replaced after that, by B =
-  // -A_ac on the sides and -B on the other diagonal.
+  // With lumped: those that BlockCholesky::parallelograms() has are replaced after that, by
+  // B = -A_ac on the sides and -B on the other diagonal.
   bool replaced = false;
   RowsVisitor visit = {};  // sees all rows of A, once
   SideTasks beside = {};   // done during the factorisation, after that, where threads would be idle
 };
 
+// `single_precision` halves the memory that the solves read and doubles the speed of the
+// arithmetic; meant for preconditioners. `automatic` begins there and factorises again in double
+// precision when a pivot fails, which statistics count.
 enum class CholeskyPrecision { double_precision, single_precision, automatic };
 
 struct BlockCholeskyStatistics {

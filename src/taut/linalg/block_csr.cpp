@@ -13,8 +13,8 @@ namespace {
 // Rows per task: about 0.4 MB of a cloth matrix, enough to hide the cost of handing a task over.
 constexpr Index rows_per_task = 256;
 
-// A row's gathered x: 64 neighbours of 3 unknowns; longer rows are done in pieces of at most this
-// many entries.
+// A row's gathered x: 64 neighbours of 3 unknowns; longer rows are done in pieces of
+// at most this many entries.
 constexpr Index gather_capacity = 192;
 
 void fill_layout(BlockPattern& p) {
@@ -64,8 +64,8 @@ TAUT_ALWAYS_INLINE void gather(const RowView& a, Index first, Index last, const 
     *reinterpret_cast<Four*>(to + a.block_offset[k]) = four(x + a.column_dof[k]);
 }
 
-// s += the first `dim` rows of a panel times g. Two sums a row, so that one need not wait for the
-// other.
+// s += the first `dim` rows of a panel times g. Two sums a row, so that one
+// need not wait for the other.
 template <int dim>
 TAUT_ALWAYS_INLINE void row_product(const double* row, Index width, const double* g, Index length,
                                     double* s) {

@@ -1,17 +1,18 @@
 #pragma once
 // Sparse matrix made of small dense blocks, one block row per node. One type serves the full matrix
 // (all blocks 3x3), the matrix reduced by constraints (blocks of 0 to 3 rows and columns) and
-// anyone's scalar matrix (blocks 1x1).
+// anyone's scalar matrix (blocks 1x1). Both triangles are stored.
 //
-//   node i has dim(i) unknowns, numbered dof_start[i] ... dof_start[i+1]-1
-//   block row i has blocks k = row_start[i] ... row_start[i+1]-1 in columns column[k], ascending,
-//   the diagonal among them its values are one dense row-major panel of dim(i) rows and width(i) =
-//   sum of dim(column[k]) columns, beginning at values[value_start[i]]:
+//   node i        has dim(i) unknowns, numbered dof_start[i] ... dof_start[i+1]-1
+//   block row i   has the blocks k = row_start[i] ... row_start[i+1]-1 in columns column[k],
+//                 ascending, the diagonal among them
+//   values        of a row: one dense row-major panel of dim(i) rows and width(i) = sum of
+//                 dim(column[k]) columns, from values[value_start[i]] on
 //
-//       A(i, column[k]) [r][c] = values[value_start[i] + r * width(i) + block_offset[k] + c]
+//   A(i, column[k]) [r][c] = values[value_start[i] + r * width(i) + block_offset[k] + c]
 //
-// so a product needs one gather of x and dim(i) straight dot products per row, whatever the dims
-// are. Both triangles are stored.
+// so a product needs one gather of x and dim(i) straight dot products per
+// row, whatever the dims are.
 
 #include <functional>
 #include <memory>
@@ -49,8 +50,8 @@ struct BlockPattern {
   Offset bytes() const;
 };
 
-// Pattern from lists of columns, sorted and unique; the diagonal is added where missing. dims[i] =
-// unknowns of node i. Asserts that columns are in range.
+// Pattern from lists of columns, sorted and unique; the diagonal is added where missing.
+// dims[i]: unknowns of node i. Asserts that columns are in range.
 std::shared_ptr<const BlockPattern> make_pattern(std::vector<std::vector<Index>> columns,
                                                  std::span<const Index> dims);
 std::shared_ptr<const BlockPattern> make_pattern(std::vector<std::vector<Index>> columns,

@@ -1,21 +1,15 @@
 #pragma once
 // A factored preconditioner with A's own pattern, M = L D U, and its solution: what IC(0), SSOR and
-// ILU(0) leave behind.
+// ILU(0) leave behind (Saad, "Iterative Methods for Sparse Linear Systems", 2nd ed., 10.3, 11.6).
 //
-//   L  unit lower triangular, strictly lower blocks `lower`        D⁻¹  `inverse_diagonal`, one
-//   block a node
-//   U  unit upper triangular, strictly upper blocks `upper`; for a symmetric M, U = Lᵀ and `upper`
-//      is empty
+//   L     unit lower triangular, strictly lower blocks `lower`
+//   D⁻¹   `inverse_diagonal`, one block a node
+//   U     unit upper triangular, strictly upper blocks `upper`; of a symmetric M, U = Lᵀ and
+//         `upper` is empty: the backward sweep scatters Lᵀ, which halves the memory
+//   M z = r:   w = L⁻¹ r (rows in order),   v = D⁻¹ w,   z = U⁻¹ v (rows backwards)
 //
-//   M z = r:   w = L⁻¹ r  (rows in order)     v = D⁻¹ w     z = U⁻¹ v  (rows backwards)
-//
-// Both sweeps read every block once. A symmetric M keeps one triangle: its backward sweep scatters
-// Lᵀ instead of gathering from a second copy, which halves the memory. The sweeps run on one
-// thread, so their bits depend on nothing: on a sheet of 25,921 nodes a level has some 50 nodes,
-// 1.5 microseconds of work, which is less than it costs to wait for another thread at its end.
-// Level order (linalg/triangular_layout.h) still lets the processor work on several rows at once: a
-// solution takes about as long as a product with A on one thread. Saad, "Iterative Methods for
-// Sparse Linear Systems", 2nd ed., sections 10.3 and 11.6.
+// Both sweeps read every block once, on one thread, so their bits depend on nothing. Why not on
+// more threads: docs/design/incomplete-factors.md.
 
 #include <span>
 
@@ -33,8 +27,8 @@ class BlockLdu {
 
   const TriangularLayout& layout() const { return layout_; }
   Index block_size() const { return layout_.block * layout_.block; }
-  // The values, block after block in the layout's order, each row-major: to be filled by whoever
-  // factorises.
+  // The values, block after block in the layout's order, each row-major: to be
+  // filled by whoever factorises.
   double* lower(Index k) { return &lower_[static_cast<std::size_t>(k) * block_size()]; }
   double* upper(Index k) { return &upper_[static_cast<std::size_t>(k) * block_size()]; }
   double* inverse_diagonal(Index place) {

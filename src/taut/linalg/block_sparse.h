@@ -2,8 +2,8 @@
 // A sparse matrix of R x C blocks, all of one size known to the compiler: prolongators and coarse
 // matrices of multigrid. BlockCsr is for the system.
 //
-//   row i has blocks start[i] ... start[i+1]-1, in columns column[k], row-major in values[k];
-//   columns in no particular order
+//   row i   has the blocks k = start[i] ... start[i+1]-1, in columns column[k], in no particular
+//           order; values[k] is row-major
 
 #include <Eigen/Core>
 #include <vector>

@@ -1,7 +1,7 @@
 #pragma once
-// M_p⁻¹ r by a sparse Cholesky factor, which the caller owns and has factorised: in the unknowns'
-// own order, or, `permuted`, for vectors in the factor's order. Allocates nothing; update() does
-// nothing.
+// M_p⁻¹ r by a sparse Cholesky factor, which the caller owns and has factorised: in the
+// unknowns' own order, or, `permuted`, for vectors in the factor's order. Allocates
+// nothing; update() does nothing.
 
 #include "taut/linalg/preconditioner.h"
 #include "taut/linalg/sparse_cholesky.h"

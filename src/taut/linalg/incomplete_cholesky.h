@@ -1,23 +1,17 @@
 #pragma once
-// Incomplete Cholesky factorisation with zero fill-in, on node blocks: IC(0), Meijerink & van der
-// Vorst 1977.
+// Incomplete Cholesky factorisation with zero fill-in, on node blocks: IC(0) (Meijerink & van der
+// Vorst 1977). L: unit lower triangular with the blocks of A's lower triangle, D: diagonal blocks.
 //
-//   A + α blockdiag(A) ≈ M = L D Lᵀ       L: unit lower triangular with the blocks of A's lower
-//                                         triangle, D: diagonal blocks
+//   A + α blockdiag(A) ≈ M = L D Lᵀ
+//   W_ij = A_ij - Σ_k W_ik L_jkᵀ            k < j, where both blocks are there
+//   L_ij = W_ij D_j⁻¹
+//   D_i  = (1+α) A_ii - Σ_j L_ij W_ijᵀ
 //
-//     W_ij = A_ij - Σ_k W_ik L_jkᵀ   (k < j, where both blocks are there)      L_ij = W_ij D_j⁻¹
-//     D_i = (1+α) A_ii - Σ_j L_ij W_ijᵀ
-//
-// Exact where the factor fills nothing in (block tridiagonal A). Blocks of 0 to 3 unknowns; as
-// scalars when no node has more than one. A choice of axes at the nodes changes nothing (a
-// block-orthogonal similarity of A is one of M), unlike with a scalar IC(0).
-//
-// α = 0 if that works. It breaks down when some D_i is not positive definite, which a positive
-// definite A does not exclude (Kershaw 1978). Then α is found (Manteuffel 1980): doubled from
-// `first_shift` until the factorisation exists, then the interval below it is halved
-// `shift_refinements` times (on a logarithmic scale), keeping the least α that works. remark()
-// tells α and the number of factorisations. The order is that of the nodes
-// (linalg/triangular_layout.h).
+// α = 0 if that works, else about the least that does: found by doubling from `first_shift`, then
+// `shift_refinements` halvings on a logarithmic scale; remark() tells α and the number of
+// factorisations. Exact where the factor fills nothing in. Blocks of 0 to 3 unknowns; as scalars
+// when no node has more than one. Order of the nodes: linalg/triangular_layout.h. Breakdown, shifts
+// and frames: docs/design/incomplete-factors.md.
 
 #include "taut/linalg/block_ldu.h"
 #include "taut/linalg/preconditioner.h"

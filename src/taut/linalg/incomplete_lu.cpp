@@ -23,8 +23,8 @@ bool invert_pivot(const double* block, double* inverse) {
   return true;
 }
 
-// Row by row (the IKJ variant): W = A's row; for each k before i: L_ik = W_ik D_k⁻¹, W_ij -= W_ik
-// U_kj.
+// Row by row (the IKJ variant): W = A's row; for each k before i: L_ik = W_ik
+// D_k⁻¹, W_ij -= W_ik U_kj.
 template <int n>
 class Factorization {
  public:

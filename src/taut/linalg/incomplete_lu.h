@@ -2,8 +2,8 @@
 // Incomplete LU factorisation with zero fill-in, on node blocks: ILU(0) (Saad, "Iterative Methods
 // for Sparse Linear Systems", 2nd ed., section 10.3).
 //
-//   A ≈ M = L D U       L, U unit triangular with the blocks of A's triangles, D: diagonal blocks;
-//                       (M - A) is zero on A's pattern
+//   A ≈ M = L D U   L, U unit triangular with the blocks of A's triangles, D: diagonal blocks;
+//                   M - A is zero on A's pattern
 //
 // For nonsymmetric A; M is then not symmetric either: for BiCGSTAB, not for conjugate gradients.
 // Exact where the factors fill nothing in. Without pivoting between nodes. The order is that of the

@@ -2,11 +2,10 @@
 // A basis per node, of some or all directions of its three unknowns: how constraints take unknowns
 // out of a matrix of 3x3 blocks that itself stays as it is.
 //
-//   Qᵀ A Q       Q = blockdiag(Q_i),  Q_i = the first dim[i] columns of frame[i], orthonormal;  3N
-//   x n, n = sum of dim
-//
-//   dim          per node 0 ... 3; empty: Q = I, and A's blocks may have any size
-//   frame        per node; not looked at where dim is 3, where Q_i = I
+//   Qᵀ A Q   Q = blockdiag(Q_i), 3N x n, n = sum of dim; Q_i: the first dim[i] columns of frame[i],
+//            orthonormal
+//   dim      per node 0 ... 3; empty: Q = I, and A's blocks may have any size
+//   frame    per node; not looked at where dim is 3, where Q_i = I
 
 #include <cstdint>
 #include <cstring>
@@ -16,8 +15,8 @@
 
 namespace taut {
 
-// Calls f(node) for the nodes whose dim is not 3, in order: mostly few. Eight nodes are looked at
-// at once.
+// Calls f(node) for the nodes whose dim is not 3, in order: mostly few. Eight
+// nodes are looked at at once.
 template <class Function>
 void for_each_projected(std::span<const std::int8_t> dim, Function&& f) {
   constexpr std::uint64_t all_three = 0x0303030303030303;

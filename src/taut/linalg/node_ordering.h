@@ -23,8 +23,8 @@ struct NodeGraph {
   Index nodes() const { return static_cast<Index>(start.size()) - 1; }
 };
 
-// How much larger one part of a bisection may be than the other, in thousandths; METIS's own
-// choice.
+// How much larger one part of a bisection may be than the other, in
+// thousandths; METIS's own choice.
 constexpr int default_imbalance = 200;
 std::vector<Index> nested_dissection(const NodeGraph& graph, int imbalance = default_imbalance);
 

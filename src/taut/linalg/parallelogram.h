@@ -23,11 +23,11 @@ struct Parallelogram {
   Index block, opposite;
 };
 
-// One for each pair a, c whose block is not among `kept` and that has exactly two common neighbours
-// b, d in `sides`, whose own block is kept but no side: the other diagonal of a cell. (Two
-// triangles with a common side b d are often no parallelogram, and springs across it were found to
-// lose by this.) One byte per block of the pattern each, sides among kept. In the order of a, then
-// c.
+// One for each pair a, c whose block is not among `kept` and that has exactly two common
+// neighbours b, d in `sides`, whose own block is kept but no side: the other diagonal of a
+// cell. (Two triangles with a common side b d are often no parallelogram, and springs across
+// it were found to lose by this.) One byte per block of the pattern each, sides among kept.
+// In the order of a, then c.
 std::vector<Parallelogram> parallelograms(const BlockPattern& pattern,
                                           std::span<const std::uint8_t> sides,
                                           std::span<const std::uint8_t> kept);

@@ -2,11 +2,11 @@
 // Preconditioned conjugate gradients for symmetric positive definite A: the paper's uPCG, with the
 // stop test of Ascher & Boxerman (2003):
 //
-//   δ = rᵀ M_p⁻¹ r,  stop when  δ <= tolerance² δ0,  δ0 = bᵀ M_p⁻¹ b        (δ0 does not depend on
-//   the initial guess)
+//   δ = rᵀ M_p⁻¹ r,  stop when  δ <= tolerance² δ0,  δ0 = bᵀ M_p⁻¹ b
 //
-// One product and one preconditioner application an iteration. b = 0 returns x = 0 at once.
-// Outcomes: converged, max_iterations, not_positive_definite (cᵀAc <= 0 or δ < 0), not_finite.
+// δ0 does not depend on the initial guess. One product and one preconditioner application an
+// iteration. b = 0 returns x = 0 at once. Outcomes: converged, max_iterations,
+// not_positive_definite (cᵀAc <= 0 or δ < 0), not_finite.
 
 #include "taut/linalg/block_csr.h"
 #include "taut/linalg/krylov.h"

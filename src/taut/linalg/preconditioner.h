@@ -2,12 +2,13 @@
 // A preconditioner M_p: an approximation of A whose inverse is cheap to apply. It owns what it
 // needs and may outlive the matrix it was built from.
 //
-//   update(A)    prepares M_p⁻¹ from the values of A. Not ok: M_p is not positive definite or not
-//                finite; say where.
-//   apply(r, z)  z = M_p⁻¹ r, symmetric positive definite in r where conjugate gradients are to use
-//                it; r and z do not overlap; does not allocate after update. One object is used by
-//                one thread at a time.
-//   remark()     what a user should know about the last update (a shift that was needed), or empty
+//   update(A)     prepares M_p⁻¹ from the values of A. Not ok: M_p is not positive definite or not
+//                 finite; says where
+//   apply(r, z)   z = M_p⁻¹ r, symmetric positive definite in r where conjugate gradients are to
+//                 use it; r and z do not overlap; does not allocate after update
+//   remark()      what a user should know about the last update (a shift that was needed), or empty
+//
+// One object is used by one thread at a time.
 
 #include <memory>
 #include <span>

@@ -2,21 +2,17 @@
 // Algebraic multigrid by smoothed aggregation, one V-cycle as M_p⁻¹ (Vaněk, Mandel & Brezina 1996;
 // for cloth: Tamstorf, Jones & McCormick 2015).
 //
-//   groups of nodes -> P̂: the near-null space of each group, orthonormalised -> P = (I - ω D⁻¹ A)
-//   P̂ -> A_coarse = Pᵀ A P -> ...
-//
-//   D        diagonal blocks of A        ω = 4 / (3 λ), λ ≈ λmax(D⁻¹A)
-//   smoother Chebyshev polynomial of degree `smoother_degree` in D⁻¹A over [λ/`smoother_range`, 1.1
-//   λ], before and after the coarse
-//            correction: symmetric, so M_p suits conjugate gradients; parallel, with the same bits
-//            for any number of threads
-//   coarsest dense Cholesky, at `coarsest_nodes` nodes or fewer
+//   P̂         the near-null space of each group of nodes, orthonormalised
+//   P          (I - ω D⁻¹ A) P̂, D the diagonal blocks of A, ω = 4/(3 λ), λ ≈ λmax(D⁻¹ A)
+//   coarser    Pᵀ A P, and so on; at `coarsest_nodes` nodes or fewer a dense Cholesky
+//   smoother   Chebyshev polynomial of degree `smoother_degree` in D⁻¹ A over
+//              [λ/`smoother_range`, 1.1 λ], before and after: symmetric, so it suits CG
 //
 // The near-null space makes the method: with the rigid motions (linalg/near_null_space.h) a coarse
-// node has six unknowns, three translations and three rotations. Without one given, it is a
+// node has six unknowns, three translations and three rotations; without one given, it is a
 // translation along each unknown's axis. Dependent columns in a group (a straight line of nodes
 // does not resist three rotations) are dropped. Nodes of 0 to 3 unknowns; as scalars where no node
-// has more than one.
+// has more than one. Parallel, with the same bits for any number of threads.
 
 #include "taut/linalg/near_null_space.h"
 #include "taut/linalg/preconditioner.h"

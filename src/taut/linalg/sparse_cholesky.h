@@ -9,10 +9,10 @@
 //                   not tell
 //   solve_permuted  the same solve for vectors already in the factor's order
 //
-// Implementations: Taut's own (linalg/block_cholesky.h), Eigen's SimplicialLDLT (here), CHOLMOD
-// (library taut_cholmod, GPL in its supernodal part). They are found by name, so that libtaut links
-// no GPL code: a program that wants CHOLMOD calls taut::register_cholmod()
-// (taut_cholmod/cholmod.h). One object is used by one thread at a time.
+// Implementations: Taut's own (linalg/block_cholesky.h), Eigen's SimplicialLDLT
+// (linalg/eigen_cholesky.h), CHOLMOD (library taut_cholmod, GPL in its supernodal part). They are
+// found by name, so that libtaut links no GPL code: a program that wants CHOLMOD calls
+// taut::register_cholmod() (taut_cholmod/cholmod.h). One object is used by one thread at a time.
 
 #include <functional>
 #include <memory>
@@ -60,8 +60,8 @@ struct ScalarCsc {
   std::vector<Index> column_start, row;
   std::vector<double> value;
 };
-// The lower triangle of A (rows >= columns), or, the same arrays read as rows, its upper triangle
-// by rows.
+// The lower triangle of A (rows >= columns), or, the same arrays read as rows,
+// its upper triangle by rows.
 void lower_triangle(const BlockCsr& a, ScalarCsc& csc);
 
 }  // namespace taut

@@ -2,12 +2,11 @@
 // Symmetric successive over-relaxation on node blocks (Young 1971; Saad, "Iterative Methods for
 // Sparse Linear Systems", 2nd ed., section 10.2):
 //
-//   M = ω/(2-ω) (D/ω + L) D⁻¹ (D/ω + Lᵀ)      A = L + D + Lᵀ, D: diagonal blocks, L: strictly lower
-//   ones      0 < ω < 2 (asserted)
+//   M = ω/(2-ω) (D/ω + L) D⁻¹ (D/ω + Lᵀ)      0 < ω < 2 (asserted)
 //
-// ω = 1 is symmetric block Gauss-Seidel. M needs no factorisation and cannot break down as long as
-// the blocks of D are positive definite. The order is that of the nodes
-// (linalg/triangular_layout.h).
+// with A = L + D + Lᵀ, D the diagonal blocks, L the strictly lower ones. ω = 1 is symmetric block
+// Gauss-Seidel. M needs no factorisation and cannot break down as long as the blocks of D are
+// positive definite. The order is that of the nodes (linalg/triangular_layout.h).
 
 #include "taut/linalg/block_ldu.h"
 #include "taut/linalg/preconditioner.h"

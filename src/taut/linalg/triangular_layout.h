@@ -1,21 +1,17 @@
 #pragma once
 // Where the blocks of a triangular factor with A's own pattern are: the symbolic half of the zero
-// fill-in preconditioners.
+// fill-in preconditioners. Rows are kept in level order, which changes no value
+// (docs/design/incomplete-factors.md).
 //
-// Node i comes before node j when i < j: A's own order, which is what decides the values of an
-// incomplete factor. The rows are kept in level order: level(i) = 1 + the highest level of the
-// earlier nodes that i is coupled with. It is only another way to run through the same factor
-// (every block stays on the side of the diagonal where it was), but neighbouring rows do not wait
-// for each other.
+//   place        a node's position in level order, from 0; nodes without unknowns have none
+//   node[p]      the node at place p; dof[p], dim[p]: its first unknown in A and their number
+//   lower        the blocks (i, j) of A with j before i, row after row, columns as places,
+//                ascending; source = which block of A's pattern
+//   upper        those with j after i, likewise
+//   block        rows and columns of every stored block: 1 when no node has more than one unknown,
+//                else 3; smaller blocks are padded with zeros (the diagonal with ones), so that one
+//                kernel serves all nodes
 //
-//   place          a node's position in level order, from 0; nodes without unknowns have none
-//   node[p]        the node at place p; dof[p], dim[p]: its first unknown in A and their number
-//   lower          the blocks (i, j) of A with j before i, row after row, columns as places,
-//                  ascending; source = which block of A's pattern
-//   upper          those with j after i, likewise
-//   block          rows and columns of every stored block: 1 when no node has more than one
-//                  unknown, else 3; smaller blocks are padded with zeros (the diagonal with ones),
-//                  so that one kernel serves all nodes
 // A pattern that is not symmetric is ordered as if it were.
 
 #include <vector>
@@ -43,8 +39,8 @@ struct TriangularLayout {
 
 TriangularLayout triangular_layout(std::shared_ptr<const BlockPattern> pattern, bool with_upper);
 
-// Block k of A's row i as block x block row-major numbers, padded with zeros; on the diagonal with
-// ones.
+// Block k of A's row i as block x block row-major numbers, padded with zeros;
+// on the diagonal with ones.
 void load_padded(const BlockCsr& a, Index i, Index k, Index block, double* out);
 
 }  // namespace taut

@@ -1,9 +1,9 @@
 #pragma once
-// A rectangular sheet of nu x nv nodes: node (i, j), i < nu along `u`, j < nv along `v`, has index
-// j * nu + i.
+// A rectangular sheet of nu x nv nodes: node (i, j), i < nu along `u`, j < nv along
+// `v`, has index j * nu + i.
 //
-//   position(i, j) = origin + i/(nu-1) * u + j/(nv-1) * v        (u, v in m: the sheet's two edges;
-//                                                                need not be orthogonal)
+//   position(i, j) = origin + i/(nu-1) * u + j/(nv-1) * v   u, v in m: the sheet's two edges, which
+//                                                           need not be orthogonal
 //   texcoord(i, j) = (i/(nu-1), j/(nv-1))
 
 #include "taut/mesh/triangle_mesh.h"

@@ -2,26 +2,18 @@
 // Who neighbours whom on a triangle mesh: the edges that carry stretch springs, the hinges that
 // carry bend springs.
 //
-//   edge          two vertices a < b of some triangle; each once, sorted by (a, b)
-//   hinge         an edge with two of its triangles; `opposite` are their third vertices (the ends
-//                 of a bend spring across the edge)
-//
-//            opposite[0]
-//              /    \          .
-//         edge.a --- edge.b
-//              \    /
-//            opposite[1]
-//
+//   edge               two vertices a < b of some triangle; each once, sorted by (a, b)
+//   hinge              an edge with two of its triangles, and their third vertices, `opposite`: the
+//                      ends of a bend spring across the edge
 //   boundary edge      in one triangle
-//   non-manifold edge  in k > 2 triangles, as where a pocket is sewn onto a sheet: it gets the k -
-//                      1 hinges of triangles that follow each other in the mesh's order, so that no
-//                      layer is left without bending; refusing would forbid real garments
-// A hinge whose two opposite vertices are the same (a doubled triangle) has no length and is left
-// out; it is counted in `folded_hinges`. Triangles that name a vertex twice have no shape and are
-// left out. Triangles of no area with three vertices count.
+//   non-manifold edge  in k > 2 triangles, as where a pocket is sewn onto a sheet: it gets the
+//                      k - 1 hinges of triangles that follow each other in the mesh's order, so
+//                      that no layer is left without bending
 //
-// Edges and hinges do not depend on the thread count. Asserts that vertex indices are in range
-// (mesh readers guarantee it). O(T log T) time and about 100 bytes a triangle.
+// Left out: hinges whose opposite vertices are the same, a doubled triangle (`folded_hinges` counts
+// them), and triangles that name a vertex twice. Triangles of no area with three vertices count.
+// Vertex indices must be in range (asserted; mesh readers guarantee it). Edges and hinges do not
+// depend on the thread count. O(T log T) time and about 100 bytes a triangle.
 
 #include <array>
 #include <string>
@@ -37,6 +29,11 @@ struct Edge {
   auto operator<=>(const Edge&) const = default;
 };
 
+//        opposite[0]
+//          /    \          .
+//     edge.a --- edge.b
+//          \    /
+//        opposite[1]
 struct Hinge {
   Edge edge;
   std::array<Index, 2> opposite{};
@@ -47,7 +44,7 @@ struct Topology {
   std::vector<Edge> edges;
   std::vector<Hinge> hinges;  // sorted by edge
   std::vector<Edge> boundary_edges;
-  std::vector<Edge> non_manifold_edges;
+  std::vector<Edge> non_manifold_edges;  // not refused: real garments have them
   Index folded_hinges = 0;
 };
 
@@ -55,8 +52,8 @@ Topology build_topology(const TriangleMesh& mesh);
 
 // Area of a triangle, m^2.
 double triangle_area(const TriangleMesh& mesh, Index triangle);
-// Each vertex's share of the surface: a third of each of its triangles, m^2. The sum is the mesh's
-// area.
+// Each vertex's share of the surface: a third of each of its triangles, m^2.
+// The sum is the mesh's area.
 std::vector<double> vertex_areas(const TriangleMesh& mesh);
 
 // What a mesh must not have if it is to be cloth. Empty lists: nothing found.

@@ -1,16 +1,15 @@
 #pragma once
 // A pinhole camera and its automatic framing.
 //
-//   image plane   pixel (x, y) of a width x height picture, (0, 0) the top left corner of the
-//                 picture, y downwards
+//   image plane   pixel (x, y) of a width x height picture, (0, 0) the top left corner, y downwards
 //   eye, target   m: where the camera is, and the point in the middle of the picture
 //   up            no unit: the direction that points upwards in the picture, not along target - eye
 //   fov           degrees: the full vertical angle of view
 //
 // Framing solves for the eye exactly. With the points' coordinates (r, u, f) along right, up and
-// forward, and tx, ty the tangents of the half angles, a point is inside when |r - e_r| <= tx (f -
-// e_f) and |u - e_u| <= ty (f - e_f); the largest e_f that all points allow is the closest camera,
-// and e_r, e_u put the margins left/right and below/above equal.
+// forward, and tx, ty the tangents of the half angles, a point is inside when
+// |r - e_r| <= tx (f - e_f) and |u - e_u| <= ty (f - e_f); the largest e_f that all points allow is
+// the closest camera, and e_r, e_u put the margins left/right and below/above equal.
 
 #include <Eigen/Geometry>
 #include <span>
@@ -32,8 +31,8 @@ struct CameraAxes {
 };
 
 // Throws InputError when eye, target, up or the field of view are not finite, eye and target
-// coincide, or the field of view is not in (0, 180) degrees. An `up` along the view is replaced by
-// another axis.
+// coincide, or the field of view is not in (0, 180) degrees. An `up` along the view is
+// replaced by another axis.
 CameraAxes camera_axes(const Camera& camera);
 
 // Where a point falls in the picture, in pixels, and its depth (m) along forward; behind the camera

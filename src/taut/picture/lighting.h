@@ -16,8 +16,8 @@ struct Lights {
   float offset = 0.0F;  // m: rays start this far off the surface, so that they do not hit it
 };
 
-// The samples of one pixel: where in the pixel, which part of the key light, which direction of the
-// sky.
+// The samples of one pixel: where in the pixel, which part of the key light,
+// which direction of the sky.
 struct PixelPattern {
   PixelPattern(int x, int y, int samples)
       : place(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
@@ -29,8 +29,8 @@ struct PixelPattern {
   PixelSamples place, key, sky;
 };
 
-// Linear colours, rolled off below 1, of the points whose lane is active; lane i takes sample first
-// + i. view: unit vectors from the camera to the points.
+// Linear colours, rolled off below 1, of the points whose lane is active; lane i takes
+// sample first + i. view: unit vectors from the camera to the points.
 void light_points(const RayScene& scene, const Lights& lights, const PixelPattern& pattern,
                   std::uint32_t first, const Packet<ShadePoint>& points, const Packet<bool>& active,
                   const Packet<Vec3f>& view, Packet<Vec3f>& colours);

@@ -1,23 +1,17 @@
 #pragma once
-// Pictures of cloth and solids by ray tracing on the CPU; needs no display and no GPU.
+// Pictures of cloth and solids by ray tracing on the CPU; needs no display and no GPU. The light
+// given back by a point with normal n and colour c, seen from its own side:
 //
-// The light given back by a point with normal n and colour c, seen from its own side:
+//   L = c * (K * max(0, n·l) * V(l) + S)
 //
-//   L = c * (K * max(0, n·l) * V(l) + S) ,   S = mean of sky(d) over directions d drawn with
-//                                            density (n·d)/π
+//   K, l   the key light: a far disc of a few degrees, from the upper left behind the camera
+//   V      its visibility (soft shadows)
+//   S      the mean of sky(d) over directions d drawn with density (n·d)/π: light of the sky and,
+//          from below, of the ground (ambient occlusion)
 //
-//   K, l   the key light: a far disc of a few degrees, from the upper left behind the camera, V its
-//          visibility (soft shadows)
-//   S      light of the sky and, from below, of the ground; blocked directions give a little of the
-//          surface's own colour (so that no fold
-//   is
-//          black): ambient occlusion
-// Where the key light falls on the far side, its share `translucency` comes through. Light above
-// 0.8 is rolled off smoothly and never clips.
-//
-// Each pixel takes `samples` stratified samples made from its own coordinates, or half of them
-// where those agree: the picture has the same bits for any thread count and from run to run on one
-// instruction set. The same camera gives the same lights and ground in every frame of a film.
+// What else gives light, and how pixels are sampled: docs/design/pictures.md. The picture has the
+// same bits for any thread count and from run to run on one instruction set. The same camera gives
+// the same lights and ground in every frame of a film.
 
 #include <optional>
 #include <span>

@@ -3,11 +3,11 @@
 // dimensions for each use, spread over the pixels.
 //
 // Pixels take consecutive runs of the sequence along a Z-order curve whose nested squares are
-// visited in a scrambled order. A pixel's 2^k points form a (0, 2)-net (each dyadic box of area
-// 2^-k holds one), and so do those of 2 x 2, 4 x 4, ... neighbours together: the error left differs
-// from pixel to pixel as much as it can, and the eye averages it away. A sample depends on the
-// pixel's coordinates and its number alone: neither on the order of work nor on the number of
-// threads.
+// visited in a scrambled order. A pixel's 2^k points form a (0, 2)-net (each dyadic box of
+// area 2^-k holds one), and so do those of 2 x 2, 4 x 4, ... neighbours together: the error
+// left differs from pixel to pixel as much as it can, and the eye averages it away. A sample
+// depends on the pixel's coordinates and its number alone: neither on the order of work nor
+// on the number of threads.
 //
 // Sources: A. Ahmed, P. Wonka, "Screen-Space Blue-Noise Diffusion of Monte Carlo Sampling Error via
 // Hierarchical Ordering of Pixels", ACM TOG 39(6), 2020; scrambling: B. Burley, "Practical
@@ -49,8 +49,8 @@ constexpr std::uint32_t scramble(std::uint32_t x, std::uint32_t seed) {
   return reverse_bits(scramble_reversed(reverse_bits(x), seed));
 }
 
-// The second Sobol dimension; the first is reverse_bits(index). Both are linear: f(a ^ b) = f(a) ^
-// f(b).
+// The second Sobol dimension; the first is reverse_bits(index). Both are
+// linear: f(a ^ b) = f(a) ^ f(b).
 constexpr std::uint32_t sobol_second(std::uint32_t index) {
   std::uint32_t result = 0;
   for (std::uint32_t direction = 1U << 31; index != 0; index >>= 1, direction ^= direction >> 1)

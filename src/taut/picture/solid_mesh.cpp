@@ -39,8 +39,8 @@ class Builder {
   }
   void triangle(Index a, Index b, Index c) { solid_.mesh.triangles.push_back({a, b, c}); }
 
-  // The parallelogram corner, corner + a, corner + a + b, corner + b, seen counter-clockwise along
-  // -normal.
+  // The parallelogram corner, corner + a, corner + a + b, corner + b, seen
+  // counter-clockwise along -normal.
   void quad(const Vec3& corner, const Vec3& a, const Vec3& b, const Vec3& normal) {
     const Index i = vertex(corner, normal, Vec2(0, 0));
     vertex(corner + a, normal, Vec2(1, 0));

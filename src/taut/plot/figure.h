@@ -8,8 +8,8 @@
 //   HeatMap   values[row * columns + column], row 0 on top; one that is not finite is an empty cell
 //
 // Colours are those of Okabe & Ito ("Color Universal Design", 2008), which colour-blind readers can
-// tell apart, with a dash pattern and a mark a round through them, so that 28 curves look
-// different. Text is drawn as it is given: nothing in it is markup or a command.
+// tell apart; each round through them has a dash pattern and a mark of its own, so that 28 curves
+// look different. Text is drawn as it is given: nothing in it is markup or a command.
 
 #include <cmath>
 #include <filesystem>

@@ -7,8 +7,8 @@
 
 namespace taut {
 
-// Returns what gnuplot drew. Throws InputError: not installed, or failed, with the end of what it
-// said.
+// Returns what gnuplot drew. Throws InputError: not installed, or failed, with
+// the end of what it said.
 std::string run_gnuplot(const GnuplotJob& job);
 
 }  // namespace taut

@@ -23,8 +23,8 @@ bool drawable(double value, const Axis& axis) {
   return std::isfinite(value) && (axis.scale == AxisScale::linear || value > 0.0);
 }
 
-// A line of the file a point; an empty line where the curve is to break. Empty text: nothing to
-// draw.
+// A line of the file a point; an empty line where the curve is to break.
+// Empty text: nothing to draw.
 std::string curve_data(const Curve& curve, const Panel& panel) {
   std::string text;
   bool drawn = false;

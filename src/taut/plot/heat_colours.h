@@ -1,7 +1,7 @@
 #pragma once
-// Colours of heat maps: viridis (Smith & van der Walt 2015) for amounts, purple over white to
-// orange (ColorBrewer's PuOr) for ratios and differences. Both stay in order for colour-blind
-// readers.
+// Colours of heat maps: viridis (Smith & van der Walt 2015) for amounts, purple over
+// white to orange (ColorBrewer's PuOr) for ratios and differences. Both stay in order
+// for colour-blind readers.
 
 #include "taut/plot/figure.h"
 

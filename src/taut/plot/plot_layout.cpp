@@ -43,8 +43,8 @@ double left_room(const Figure& figure, int column) {
   return width + 24;
 }
 
-// Panels over one another, of which only the lowest has its x axis written out; so have grids of
-// heat maps.
+// Panels over one another, of which only the lowest has its x axis written out; so
+// have grids of heat maps.
 bool is_stack(const Figure& figure) {
   return figure.columns <= 1 &&
          std::none_of(figure.panels.begin(), figure.panels.end() - (figure.panels.empty() ? 0 : 1),

@@ -214,14 +214,7 @@ void Simulation::deform(SolidHandle solid, std::span<const Vec3> shape) {
 void Simulation::set_solid(std::size_t solid) {
   const Solid& s = world_.solids()[solid];
   for (std::size_t k = 0; k < variant_of_.size(); ++k)
-    if (variant_of_[k] == static_cast<int>(solid)) {
-      Solid variant = contact_.solids()[k];  // its thickness and friction are its own
-      variant.key_frames = s.key_frames;
-      variant.initial = s.initial;
-      variant.velocity = s.velocity;
-      variant.angular_velocity = s.angular_velocity;
-      contact_.set_solid(k, variant);
-    }
+    if (variant_of_[k] == static_cast<int>(solid)) contact_.set_solid(k, s);
   if (s.shape == SolidShape::mesh) mesh_solid(solid).set_motion(s);
 }
 

@@ -1,7 +1,10 @@
 #pragma once
-// Semi-implicit Euler, (M + hD + h²K) dv = h (f - h K v), IMEX, which differs only in which springs
-// are implicit, and implicit Euler, which goes on from there: with all at the end of the step, M dv
-// = h f, linearised (M + hD + h²K) dv' = h f + (hD + h²K) dv. Formulas: integrator.h.
+// Semi-implicit Euler, IMEX, which differs only in which springs are implicit, and implicit Euler,
+// which goes on from there. Formulas: step/integrator.h.
+//
+//   semi-implicit   (M + hD + h²K) dv = h (f - h K v)
+//   implicit        M dv = h f with f at the end of the step, linearised again and again:
+//                   (M + hD + h²K) dv' = h f + (hD + h²K) dv
 
 #include "taut/step/integrator.h"
 

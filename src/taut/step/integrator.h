@@ -1,23 +1,13 @@
 #pragma once
 // Time integration: what linear system a step solves, and what its solution means
-// (docs/mathematics.md, 1, paper Eq. 1, 2).
+// (docs/mathematics.md, 1; docs/design/integrators.md has the systems; paper Eq. 1, 2).
 //
-//   semi_implicit_euler   (M + hD + h²K) dv = h (f - h K v);   v += dv, x += h v
-//   (Baraff & Witkin 1998)
-//   imex                  the same, with K and spring D of the stretch springs only; f of all
-//   (Ascher et al. 1997)
-//   imex_adaptive         the same, with K and D of all springs but those that an explicit step
-//   takes  (Boxerman & Ascher 2004;
-//                         stably at this step length
-//                         element/explicit_split.h)
-//   bdf2                  (M + 2h/3 D + 4h²/9 K) dx = M [δ/3 + h/9 (8 v_n - 2 v_{n-1})] + 4h²/9 (f
-//                         + D v_n) + 2h/9 D δ
-//                         δ = x_n - x_{n-1};  x += dx, v = (3 dx - δ)/(2h)
-//                         (Choi & Ko 2002)
-//   newton                M dv = h f(x + h (v + dv), v + dv), f at the end of the step: linearised
-//   (Hauth 2004;
-//                         again until it holds
-//                         step/newton.h)
+//   semi_implicit_euler   one linearisation of implicit Euler            Baraff & Witkin 1998
+//   imex                  the same with K and D of stretch springs only  Ascher et al. 1997
+//   imex_adaptive         with K and D of all springs but those that an
+//                         explicit step takes stably                     Boxerman & Ascher 2004
+//   bdf2                  second order, one linearised solve             Choi & Ko 2002
+//   newton                implicit Euler, linearised until it holds      Hauth 2004
 //
 // The unknown is a velocity change dv (m/s) or a displacement dx (m). External damping (drag, wind)
 // is always implicit: it is diagonal and costs nothing. BDF2's first step, and the step after a

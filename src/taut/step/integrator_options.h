@@ -1,6 +1,6 @@
 #pragma once
-// Names of the integrators and the options of those that have any; step/integrator.h has the
-// formulas.
+// Names of the integrators and the options of those that have any;
+// step/integrator.h has the formulas.
 
 namespace taut {
 

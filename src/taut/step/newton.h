@@ -3,14 +3,14 @@
 // Newton method; Hauth 2004, and Hauth, Etzmuss & Strasser 2003). The linear solver inside it is
 // the step's own, at its own tolerance:
 //
-//   r(u) = b(u) - A(u) u     residual of the momentum equation at the iterate u, N s; implicit
-//                            Euler: h f - M u plus given impulses
-//   A(u) u' = b(u)           solved on the constraints, starting at u; simplified: A holds the used
-//                            Jacobians (docs/mathematics.md, 2)
-//   u + α (u' - u)           α = 1, 1/2, 1/4, ... until |S r| falls
-//   stop                     |S r|_(M⁻¹) <= tolerance * scale,  |r|²_(M⁻¹) = sum |r_i|²/m_i
-//   scale                    |S b| of the step's first linear system plus h |f_ext|: what drives
-//                            the step, with a floor for cloth at rest
+//   r(u) = b(u) - A(u) u   residual of the momentum equation at the iterate u, N s; implicit Euler:
+//                          h f - M u plus given impulses
+//   A(u) u' = b(u)         solved on the constraints, starting at u; simplified: A holds the used
+//                          Jacobians (docs/mathematics.md, 2)
+//   u + α (u' - u)         α = 1, 1/2, 1/4, ... until |S r| falls
+//   stop                   |S r|_(M⁻¹) <= tolerance * scale,  |r|²_(M⁻¹) = sum |r_i|²/m_i
+//   scale                  |S b| of the step's first linear system plus h |f_ext|: what drives the
+//                          step, with a floor for cloth at rest
 //
 // Convergence is linear at worst: the dropped terms are those of compressed springs.
 

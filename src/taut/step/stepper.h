@@ -1,14 +1,14 @@
 #pragma once
 // One step: assemble -> constrain -> solve -> update. Contact may ask for several solves of the
-// same assembled system with other constraints and impulses (passes); the loop in scene/ joins the
-// two.
+// same assembled system with other constraints and impulses (passes); the loop in sim/simulation.h
+// joins the two.
 //
-//   begin(state, h)              A and b, once
-//   solve(constraints, impulses) the unknown, the end positions and velocities, the constraint
-//   impulses; may be repeated. One linear solve, or
-//                                with a nonlinear integrator as many as Newton's method takes
-//   commit(state)                takes the last solve's end state over
-//   correct(state, x, h)         takes positions over that contact has corrected since
+//   begin(state, h)               A and b, once
+//   solve(constraints, impulses)  the unknown, the end positions and velocities, the constraint
+//                                 impulses; may be repeated. One linear solve, or with a nonlinear
+//                                 integrator as many as Newton's method takes
+//   commit(state)                 takes the last solve's end state over
+//   correct(state, x, h)          takes positions over that contact has corrected since
 //
 // Constraint impulse (N s, on each node): j = (I - S)(A u - b), scaled to an impulse
 // (docs/mathematics.md, 3.6). A positive n·j pushes along n.
@@ -49,8 +49,8 @@ class Stepper {
   // moved over h (s), and a multistep method starts afresh.
   void correct(State& state, std::span<const Vec3> corrected, double h) const;
   double h() const { return h_; }
-  // The next step is of another size than the last: a multistep method must not use the step
-  // before.
+  // The next step is of another size than the last: a multistep method must
+  // not use the step before.
   void start_afresh(State& state) const;
 
   // The system of the last begin/solve, for dumps, benches and other solvers; of several

@@ -3,25 +3,16 @@
 // own conjugate gradients use it as preconditioner (iparm[3] = 10 L + 2). Where they fail, PARDISO
 // factorises the new matrix by itself and keeps that factor.
 //
-//   L = ceil(-log10(tolerance)), from 1 to 15   PARDISO stops at |dx_i| / |dx_0| < 10^-L, dx the
-//                                               correction that the preconditioner gives:
-//   a whole number
-//                                               of digits, here the fewest that are no looser than
-//                                               the tolerance asked for
-//   summary.iterations                          of CG on the kept factor; 0 where the matrix was
-//                                               factorised
-//   summary.factor_ms                           of factorisation and solve, which PARDISO then does
-//                                               in one call, and of CG that was in vain
-//   summary.remark                              why a kept factor was given up: other pattern, or a
-//                                               fall-back (with their count so far)
+//   L           ceil(-log10(tolerance)), 1 to 15: PARDISO stops at |dx_i| / |dx_0| < 10^-L, dx the
+//               correction that the preconditioner gives; the fewest digits no looser than asked
+//   iterations  of CG on the kept factor; 0 where the matrix was factorised
+//   factor_ms   of factorisation and solve, which PARDISO then does in one call, and of CG in vain
+//   remark      why a kept factor was given up: other pattern, or a fall-back (with their count)
 //
-// PARDISO wants one sparsity pattern: when the pattern of Ã is new (other constraints), analysis
-// and factorisation are done anew. Its limit is 150 iterations, whatever max_iterations says; the
-// initial guess and the observer are not used.
-//
-// Not reproducible: PARDISO also gives CG up when factorising seems faster to it, and asks a clock.
-// The same systems may so be solved by CG in one run and by a factorisation in the next, both
-// within the tolerance. oneMKL has no setting against this.
+// A new pattern of Ã (other constraints) is analysed and factorised anew. PARDISO's limit is 150
+// iterations, whatever max_iterations says; initial guess and observer are not used. Not
+// reproducible: PARDISO gives CG up when factorising seems faster to it, and asks a clock; oneMKL
+// has no setting against this.
 
 #include "taut/solve/reduced_system.h"
 #include "taut/solve/solver.h"

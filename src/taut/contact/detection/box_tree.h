@@ -2,15 +2,15 @@
 // A packed tree of axis-aligned boxes with eight children a node, for contact/broad_phase.h.
 // Private to contact.
 //
-//   item      a vertex, an edge or a triangle, given by its corners (1, 2 or 3 vertices)
-//   slot      an item's place in the tree: items that are near each other have near slots; item =
-//             order[slot]
-//   group     eight boxes side by side. levels[0][g] holds the items of slots 8g ... 8g+7;
-//             levels[L][g] lane l is the box around group 8g+l of level L-1. The highest level is
-//             one group; there are at least two levels
-//   empty lane  the last group of a level may be partly empty: its boxes are NaN, which overlap
-//               nothing
-//   mask      bit l stands for lane l
+//   item         a vertex, an edge or a triangle, given by its corners (1, 2 or 3 vertices)
+//   slot         an item's place in the tree: items that are near each other have near slots;
+//                item = order[slot]
+//   group        eight boxes side by side. levels[0][g] holds the items of slots 8g ... 8g+7;
+//                levels[L][g] lane l is the box around group 8g+l of level L-1. The highest level
+//                is one group; there are at least two levels
+//   empty lane   the last group of a level may be partly empty: its boxes are NaN, which overlap
+//                nothing
+//   mask         bit l stands for lane l
 
 #include <algorithm>
 #include <array>

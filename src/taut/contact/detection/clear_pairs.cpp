@@ -300,8 +300,8 @@ TAUT_ALWAYS_INLINE void find_clear_few(const PairCorners* pairs, const Positions
                                          (planes.throughout[l] ? clear_throughout : 0));
 }
 
-// find(pairs + k, flags + k) for every `few` of the pairs; the last ones are filled up with copies
-// of the last.
+// find(pairs + k, flags + k) for every `few` of the pairs; the last ones are filled up
+// with copies of the last.
 template <Index few, class Pair, class Find>
 TAUT_ALWAYS_INLINE void for_lanes(const Pair* pairs, Index count, std::uint8_t* flags,
                                   const Find& find) {

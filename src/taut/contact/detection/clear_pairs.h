@@ -1,6 +1,6 @@
 #pragma once
 // Which of many pairs a plane surely keeps apart, cheaply: most pairs of the broad phase are
-// neighbours in a smooth piece of cloth, and need no closest points.
+// neighbours in a smooth piece of cloth, and need no closest points. Private to contact.
 //
 //   corners    of a pair: vertex p, then a, b, c of the triangle; or a, b of the first edge, then
 //              c, d of the second
@@ -9,12 +9,10 @@
 // Tried are planes across the line between the middles of the two shapes; across that line's part
 // orthogonal to an edge; and across the normal of the triangle, of both edges. All are of the mean
 // of start and end. A plane counts when it leaves more than `distance` between the shapes at the
-// start, or at both ends: and then, since all motion is linear, all the way. Rounding is bounded as
-// in contact/ccd.h: what is called clear is proved; the reverse does not hold. Numbers that are not
-// finite are not clear.
-//
-// Several pairs side by side, each by itself: the result does not depend on which come together.
-// Private to contact.
+// start, or at both ends: and then, since all motion is linear, all the way. What is called clear
+// is proved, rounding included (docs/mathematics.md, 6); the reverse does not hold. Numbers that
+// are not finite are not clear. Several pairs side by side, each by itself: the result does not
+// depend on which come together.
 
 #include <array>
 #include <cstdint>

@@ -1,6 +1,6 @@
 #pragma once
-// The inner loops of the broad phase: which of eight boxes overlap which of eight others. Private
-// to contact.
+// The inner loops of the broad phase: which of eight boxes overlap which of eight
+// others. Private to contact.
 //
 //   mine, theirs   two groups
 //   lanes          of mine that are looked at

@@ -1,9 +1,9 @@
 #pragma once
-// The planes of contact/ccd.h, for one pair: see there for why they miss nothing.
+// The planes of contact/ccd.h, for one pair: docs/mathematics.md, 6, says why they miss nothing.
 //
-//   D_k(t) = (1 - t) D_k^0 + t D_k^1, k = 0 ... 3     differences of corners of the two shapes, m;
-//                                                     a vertex and a triangle have three: the last
-//                                                     is given twice
+//   D_k(t) = (1 - t) D_k^0 + t D_k^1, k = 0 ... 3   differences of corners of the two shapes, m; a
+//                                                   vertex and a triangle have three: the last is
+//                                                   given twice
 //
 // Four lanes side by side, one a difference. Private to contact.
 
@@ -24,8 +24,8 @@ class SeparatingPlanes {
   using Lanes = double __attribute__((vector_size(32)));
 
  public:
-  // Of a vertex p and a triangle a b c; of two edges a b and c d. x: the corners at one end of the
-  // time.
+  // Of a vertex p and a triangle a b c; of two edges a b and c d. x: the
+  // corners at one end of the time.
   struct VertexTriangle {};
   struct EdgeEdge {};
   TAUT_ALWAYS_INLINE SeparatingPlanes(VertexTriangle, const Vec3* const (&x0)[4],

@@ -24,8 +24,8 @@ inline Index strided(Index k, Index count) {
   return static_cast<Index>(static_cast<Offset>(k) * stride % count);
 }
 
-// Eight groups of the second tree, and for each of eight groups of the first one those of them that
-// it may meet.
+// Eight groups of the second tree, and for each of eight groups of the first one those
+// of them that it may meet.
 struct Block {
   Index group;
   std::array<std::uint8_t, 8> masks;
@@ -121,8 +121,8 @@ class TreeQuery {
     return {{box, box}};
   }
 
-  // The items of group q with those of the group g of the second tree that is in lane `below` of
-  // `parent`.
+  // The items of group q with those of the group g of the second tree that is in
+  // lane `below` of `parent`.
   void meet(Index q, Index parent, int below, std::vector<Pair>& pairs) const {
     const Index g = 8 * parent + below;
     Mask lanes = 0xff;

@@ -31,9 +31,9 @@ struct AnalyzedGraph {
 // Diagonal blocks always are.
 AnalyzedGraph analyzed_graph(const BlockPattern& pattern, std::span<const std::uint8_t> mask = {});
 
-// The blocks of the pattern that are left out, row by row: the first column of each in its row of
-// A. In a row, those that something can stand in for (linalg/parallelogram.h) come last, from
-// row_split on.
+// The blocks of the pattern that are left out, row by row: the first column of each in its
+// row of A. In a row, those that something can stand in for (linalg/parallelogram.h) come
+// last, from row_split on.
 struct UnanalyzedBlocks {
   std::vector<Index> row_start, row_split, value;
   std::span<const Index> row(Index i, bool without_replaced) const {

@@ -1,5 +1,5 @@
-// NumericFactor: a front's columns from the blocks gathered from A, less what condensed nodes leave
-// (condensation.h).
+// NumericFactor: a front's columns from the blocks gathered from A, less what condensed
+// nodes leave (condensation.h).
 
 #include <algorithm>
 

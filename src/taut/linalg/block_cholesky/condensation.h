@@ -1,20 +1,17 @@
 #pragma once
 // Nodes that are eliminated before all others, each by itself: no two of them share a block (an
 // independent set, greedily the nodes of fewest blocks first; of a square grid every second node).
-// What a front of the multifrontal method does for such a node is mostly bookkeeping; here it is a
-// handful of 3x3 products, the same for all, and the fronts are left with fewer, larger nodes'
-// worth of work.
+// Static condensation, block LDLᵀ of the nodes' own columns; why: docs/design/block-cholesky.md.
 //
-//   C_i        diagonal block of node i, B_ij its blocks; G_i Gᵀ_i = C_i⁻¹ (lower triangular
-//              inverse factor, transposed)
-//   U_ij = Gᵀ_i B_ij          A_jk -= Uᵀ_ij U_ik     for all j, k that i shares blocks with: a
-//                                                    dense matrix of few nodes
-//   forward    y_i = Gᵀ_i b_i, b_j -= Uᵀ_ij y_i
-//   backward   x_i = G_i (y_i - Σ_j U_ij x_j)
+//   C_i, B_ij   the diagonal block of node i, its other blocks
+//   G_i         G_i Gᵀ_i = C_i⁻¹: lower triangular inverse factor, transposed
+//   U_ij        Gᵀ_i B_ij
+//   matrix      A_jk -= Uᵀ_ij U_ik for all j, k that i shares blocks with
+//   forward     y_i = Gᵀ_i b_i, b_j -= Uᵀ_ij y_i
+//   backward    x_i = G_i (y_i - Σ_j U_ij x_j)
 //
-// (static condensation; block LDLᵀ of the nodes' own columns.) With a basis Q_i
-// (linalg/node_basis.h), G_i is of Qᵀ_i C_i Q_i, U_ij = Gᵀ_i Qᵀ_i B_ij, and the solves apply Q_i on
-// the way in and out.
+// With a basis Q_i (linalg/node_basis.h), G_i is of Qᵀ_i C_i Q_i, U_ij = Gᵀ_i Qᵀ_i B_ij, and the
+// solves apply Q_i on the way in and out.
 
 #include <vector>
 
@@ -26,8 +23,8 @@ namespace taut {
 struct CondensedGraph {
   AnalyzedGraph all;
   std::vector<Index> condensed;  // nodes of that graph
-  // of the others, in the same order, with a block wherever one arises. A value of -1: A has none
-  // there
+  // of the others, in the same order, with a block wherever one arises. A
+  // value of -1: A has none there
   AnalyzedGraph rest;
 };
 

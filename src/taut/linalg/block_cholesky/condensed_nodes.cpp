@@ -139,8 +139,8 @@ TAUT_ALWAYS_INLINE void forward_plain(const PlainNodes<T>& nodes, Index k, const
   for (Index e = nodes.block_start[k] + 1; e < nodes.block_start[k + 1]; ++e) {
     block += 9;
     const Four sum = yk[0] * quad(block) + yk[1] * quad(block + 3) + yk[2] * quad(block + 6);
-    // Number by number: the next node may begin three further, and four would have to wait for each
-    // other.
+    // Number by number: the next node may begin three further, and four would
+    // have to wait for each other.
     for (Index r = 0; r < 3; ++r) y[nodes.row[e] + r] -= sum[r];
   }
 }

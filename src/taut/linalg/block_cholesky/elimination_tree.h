@@ -3,9 +3,9 @@
 // SIAM J. Matrix Anal. Appl. 11; Gilbert, Ng & Peyton 1994, same journal 15; Davis 2006, Direct
 // Methods for Sparse Linear Systems, sections 4.1 to 4.5).
 //
-//   parent[j] = the smallest i > j with L(i, j) != 0, or -1 for a root
-//   count[j]  = sum of weight[i] over the rows i >= j with L(i, j) != 0: with weight = unknowns of
-//             a node, the height of a block column
+//   parent[j]   the smallest i > j with L(i, j) != 0, or -1 for a root
+//   count[j]    sum of weight[i] over the rows i >= j with L(i, j) != 0: with weight = unknowns of
+//               a node, the height of a block column
 //
 // Nodes are numbered in the order of their elimination. Near linear time.
 

@@ -1,25 +1,17 @@
 #pragma once
 // Where everything of a factorisation lies in memory, planned once per analysis: panels, updates,
-// vectors, and how children enter their parents.
+// vectors, and how children enter their parents (docs/design/block-cholesky.md). A supernode is a
+// front; its rows are padding and its pivots, then the unknowns of its row nodes, in the order of
+// elimination. Condensed nodes come first in that order.
 //
-// Every supernode is a front (front_kernels.h). Its rows are padding and its pivots, then the
-// unknowns of its row nodes, in the order of elimination. Nodes that are condensed (condensation.h)
-// come first in that order, before those of the fronts.
+//   gathered   A's blocks in the order of elimination; of condensed nodes their G and U
+//   scratch    of each thread, for the task at hand: panels and updates while they are needed
+//   arena      the same of fronts that are tasks of their own, and the updates that tasks hand on
+//   packed     panels in the order of elimination: the factor L, which the solves stream through
+//   vector     vector_size() entries a front: what the solves work on
 //
-//   gathered A's blocks in the order of elimination; those of condensed nodes become their G, in
-//   the diagonal block's place, and U
-//   scratch  of each thread, for the task at hand: panels, which live while their front is
-//            eliminated, and updates, which live until the parent has taken them in; later ones
-//            reuse the place, so all of this stays in a cache
-//   arena    the same of the fronts that are tasks of their own, and the updates that tasks hand
-//            on: places of tasks that may run at the same time do not overlap
-//   packed   panels one after the other in the order of elimination: the factor L, which the solves
-//            stream through
-//   vector   vector_size() entries a front: what the solves work on
-//
-// Tasks: whole subtrees whose work is a small share of all, each eliminated by one thread in order;
-// every front above them is a task of its own, whose products are shared between threads. The
-// shares depend on `threads`, so the plan does; the numbers that come out do not.
+// Tasks are whole subtrees, each eliminated by one thread in order, and single fronts above them.
+// The plan depends on `threads`; the numbers that come out do not.
 
 #include <span>
 #include <vector>
@@ -88,9 +80,8 @@ struct FactorLayout {
   // per block: its first column in the row of the analysed matrix; -1: it has none there
   std::vector<Index> row_value;
   std::vector<Offset> row_to;  // per row: gathered_start of its node; -1 without unknowns
-  // Where nodes are condensed, and then a gathered block e begins at 9 e:
-  // per block of condensed nodes: where the other node begins in the vector of the front that takes
-  // it in
+  // Where nodes are condensed, and then a gathered block e begins at 9 e: per block of condensed
+  // nodes: where the other node begins in the vector of the front that takes it in
   std::vector<Index> condensed_row;
   std::vector<Index> pair_start;    // per block, into pair; blocks + 1
   std::vector<CondensedPair> pair;  // first: at the node that has the block

@@ -1,42 +1,18 @@
 #pragma once
-// The dense arithmetic of the block Cholesky factorisation: what is done inside one front, compiled
-// once per instruction set.
+// The dense arithmetic inside one front, compiled once per instruction set. A front is the
+// lower triangle of a symmetric matrix of `rows` rows whose first `columns` columns
+// (pivots) are eliminated:
 //
-// A front is the lower triangle of a dense symmetric matrix of `rows` rows, whose first `columns`
-// columns (pivots) are eliminated:
+//   L11 L11ᵀ = F11    L21 = F21 L11⁻ᵀ    U = -L21 L21ᵀ, to be added to the parent's front
 //
-//        columns                        L11 L11ᵀ = F11          Cholesky of the pivots
-//      | F11      |                     L21      = F21 L11⁻ᵀ    triangular solve
-//      | F21  F22 |                     U        = -L21 L21ᵀ    update, to be added to the parent's
-//                                                               front
+//   panel    F11, F21, then L11, L21, in slabs of R = slab_rows rows, columns one after the other:
+//            element (i, j) at panel_offset(i/R) + j R + i%R; L11's diagonal is stored inverted
+//   update   U, in slabs: element (i, j) at update_offset(i/R) + (j-columns) R + i%R
+//   packed   L11 and L21 once more, as the solves read them
 //
-// Both parts are stored as slabs of R = slab_rows rows, columns one after the other inside a slab,
-// slabs one after the other:
-//
-//   panel (F11, F21, then L11, L21)   slab b holds the columns 0 ... min(columns, R(b+1))-1:
-//   element (i, j) at panel_offset(i/R) + j
-//   R + i%R update (U)                        slab b >= columns/R holds the columns columns ...
-//   R(b+1)-1:  at update_offset(i/R) + (j-columns) R + i%R
-//
-// A slab's column is a few SIMD registers; a row of a slab, read with stride R, is what the other
-// operand of a product needs. So slabs serve as both operands of every product as they are. The
-// diagonal of L11 is stored inverted. Above the diagonal, an eliminated panel's slabs are 0; an
-// update's are undefined, and a panel's before.
-//
-// The solves only read L11 and L21 once, from memory: they take the packed panel, which leaves out
-// most of what the slabs are padded with and lies in the order in which it is read. Group after
-// group of column_group pivots (without those that are padding):
-//
-//   triangle   the group's columns, its own rows (column_group of them each)
-//   below      the rows after the group's, cut into pieces at the multiples of the vector length,
-//              columns one after the other inside a
-//   piece; the
-//              front's last rows padded to a multiple of 4
-//
-// R and column_group (the register block of the elimination is R x column_group) differ by
-// instruction set and precision: the layout is made for the kernels that run. `columns` is a
-// multiple of column_group; column_group divides R. No kernel allocates; all may be called from
-// several threads on different data.
+// `columns` is a multiple of column_group, which divides R; both differ by instruction set and
+// precision. No kernel allocates; all may be called from several threads on different data. Why
+// these layouts: docs/design/block-cholesky.md.
 
 #include <cstdint>
 
@@ -90,15 +66,15 @@ struct FrontShape {
 // How the rows of a child's front lie in its parent's. Both are in the order of elimination, so
 // what a SIMD register of the parent's rows takes are consecutive rows of the child.
 //
-// `count` rows from `from` on are the parent's from `to` on, within either its pivots or its other
-// rows.
+// `count` rows from `from` on are the parent's from `to` on, within either its
+// pivots or its other rows.
 struct RowRun {
   std::int32_t from = 0, to = 0, count = 0;
 };
 
-// The parent's rows to ... to+lanes-1: row to+i is the child's row from+lane[i], or none of its
-// rows where lane[i] < 0. `from` and `to` are multiples of the register's lanes, and lane[i] < 2
-// lanes.
+// The parent's rows to ... to+lanes-1: row to+i is the child's row from+lane[i], or
+// none of its rows where lane[i] < 0. `from` and `to` are multiples of the register's
+// lanes, and lane[i] < 2 lanes.
 struct RowSpread {
   static constexpr std::int32_t most_lanes = 16;
   std::int32_t from = 0, to = 0, last = 0;  // last: the last of the child's rows here

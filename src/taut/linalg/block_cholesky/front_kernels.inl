@@ -157,8 +157,8 @@ struct Block {
       }
     }
   }
-  // v = v L⁻ᵀ with the block's triangle of L (diagonal inverted), whose first row and column are at
-  // `triangle`.
+  // v = v L⁻ᵀ with the block's triangle of L (diagonal inverted), whose first row and
+  // column are at `triangle`.
   TAUT_INLINE void solve_triangle(const T* triangle) {
 #pragma GCC unroll 16
     for (Int j = 0; j < Columns; ++j) {
@@ -172,8 +172,8 @@ struct Block {
   }
 };
 
-// Calls f.template operator()<First, Halves>() with the halves of a slab that hold its rows begin
-// ... end-1.
+// Calls f.template operator()<First, Halves>() with the halves of a slab that hold
+// its rows begin ... end-1.
 template <class T, class Function>
 TAUT_INLINE void with_rows(Int begin, Int end, Function f) {
   constexpr Int half = slab_rows<T> / 2;

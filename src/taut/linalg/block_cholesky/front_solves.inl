@@ -223,8 +223,8 @@ void forward(const FrontShape& shape, const T* packed, T* y) {
   }
 }
 
-// Half of the lanes of two vectors seen as segments: of each segment its lower (Upper = 0) or upper
-// (1) half.
+// Half of the lanes of two vectors seen as segments: of each segment its lower
+// (Upper = 0) or upper (1) half.
 template <class T, Int Segment, Int Upper, std::size_t... I>
 TAUT_INLINE Vector<T> halves_of_segments(Vector<T> a, Vector<T> b, std::index_sequence<I...>) {
   constexpr Int half = Segment / 2;

@@ -1,26 +1,18 @@
 #pragma once
 // The numbers of a block Cholesky factorisation in one precision: P A Pᵀ = L Lᵀ by the multifrontal
-// method (Duff & Reid 1983; Liu 1992), and the solves.
+// method (Duff & Reid 1983; Liu 1992), and the solves. A's blocks are gathered in the order of
+// elimination; condensed nodes are eliminated on the way. Then for each front, children first:
 //
-// First A's blocks are gathered in the order of elimination and in the factor's precision
-// (gather.cpp): A is read once, from end to end, where fronts would take rows from all over it. On
-// the way nodes that are condensed are eliminated (condensed_nodes.cpp, condensation.h).
+//   1   panel = 0, then A's blocks in the pivots' columns, less what condensed nodes leave;
+//       unknowns that are missing in A, and padding, get the identity
+//   2   add the columns of the children's updates that are pivots here
+//   3   eliminate the pivots
+//   4   update = -L21 L21ᵀ, written, not accumulated: so it is never zeroed
+//   5   only then add the rest of the children's updates
+//   6   pack the panel
 //
-// Then for each front, children first (front_kernels.h has the arithmetic, factor_layout.h the
-// memory):
-//
-//   1  panel = 0; the blocks of A in the pivots' columns, less what condensed nodes leave
-//      (assemble.cpp); unknowns that are missing in A (and padding) get the identity
-//   2  add the columns of the children's updates that are pivots here
-//   3  eliminate the pivots
-//   4  update = -L21 L21ᵀ, written, not accumulated: so it is never zeroed ...
-//   5  ... and only then add the rest of the children's updates
-//   6  pack the panel
-//
-// The solves keep one short vector a front, rows() long: forward, a front adds its children's and
-// hands on what its pivots subtract from the rows below; backward, it reads the solution of those
-// rows from its parent's. No two fronts that run at the same time write the same vector. Condensed
-// nodes come first, and last, at the front below all their neighbours.
+// The solves keep one short vector a front; no two fronts that run at the same time write the same
+// one. More: docs/design/block-cholesky.md.
 
 #include <array>
 #include <atomic>

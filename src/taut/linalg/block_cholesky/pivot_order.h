@@ -19,8 +19,8 @@
 
 namespace taut {
 
-// New places: place[k] is where the node at place k of the tree's order should go, in the same
-// supernode.
+// New places: place[k] is where the node at place k of the tree's order should
+// go, in the same supernode.
 std::vector<Index> pivot_places(const SupernodeTree& tree);
 
 }  // namespace taut

@@ -8,8 +8,8 @@
 
 namespace taut {
 
-// All that this machine can run: x86-64-v4, x86-64-v3, plain. The plain ones are always there and
-// come last.
+// All that this machine can run: x86-64-v4, x86-64-v3, plain. The plain ones are
+// always there and come last.
 template <class T>
 std::vector<const FrontKernels<T>*> runnable_front_kernels();
 

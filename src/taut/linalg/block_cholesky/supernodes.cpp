@@ -67,8 +67,8 @@ void move_pivots(std::span<const Index> place, SupernodeTree& tree) {
 SupernodeTree make_supernode_tree(const NodeGraph& graph, std::vector<Index> order,
                                   std::span<const Index> weight) {
   SupernodeTree tree;
-  // Number the nodes in a postorder of their elimination tree: the same fill-in, and subtrees in
-  // one piece.
+  // Number the nodes in a postorder of their elimination tree: the same fill-in,
+  // and subtrees in one piece.
   order = composed(order, postorder(elimination_tree(renumbered(graph, order))));
   const NodeGraph ordered = renumbered(graph, order);
   const std::vector<Index> ordered_weight = composed(weight, order);

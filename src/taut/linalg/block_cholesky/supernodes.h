@@ -1,25 +1,17 @@
 #pragma once
 // Supernodes: runs of nodes that are eliminated together as one dense front, and the tree they form
-// (Liu 1992, SIAM Review 34, the multifrontal method).
+// (Liu 1992, SIAM Review 34, the multifrontal method). How they are chosen:
+// docs/design/block-cholesky.md. All of it is about nodes.
 //
-// A fundamental supernode holds columns of equal structure. Small ones are merged into their
-// parents even where that stores zeros ("relaxed amalgamation", Ashcraft & Grimes 1989), as long as
-// a count of the work says that the larger front is cheaper than two small ones:
-//
-//   work(front) = a madds + b (entries of the panel) + c (entries of the update) + d          merge
-//   while work(merged) < work(child) + work(parent)
-//
-// All of it is about nodes; weight[i] = unknowns of node i, at least 1.
-//
-//   order[k]                          the node eliminated as the k-th
-//   supernode s                       the nodes order[first[s]] ... order[first[s+1]-1]; parent[s]
-//                                     > s or -1; subtrees are numbered in one
-//   piece row[row_start[s]] ... ascending   places k in the order of the nodes below the pivots of
-//                                           s with an entry of L in them
-//   factor_entries                    entries of L in the lower triangle, with the diagonal, before
-//                                     amalgamation (and pivot_order.h)
-//   factor_flops                      multiplications and additions of the factorisation, likewise:
-//                                     sum over columns of (entries)²
+//   weight[i]           unknowns of node i, at least 1
+//   order[k]            the node eliminated as the k-th
+//   supernode s         the nodes order[first[s]] ... order[first[s+1]-1]; subtrees are numbered in
+//                       one piece
+//   parent[s]           > s, or -1
+//   row[row_start[s]]   ascending, up to row_start[s+1]: places k in the order, of the nodes below
+//                       the pivots of s with an entry of L in them
+//   factor_entries      entries of L in the lower triangle, with the diagonal, before amalgamation
+//   factor_flops        multiplications and additions, likewise: sum over columns of (entries)²
 
 #include <span>
 #include <vector>
