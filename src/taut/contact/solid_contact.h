@@ -61,8 +61,9 @@ class SolidContact {
   // After a pass: x_end, m, and j, N s, one each a node. True when another pass is needed; false at
   // the fixed point or at max_passes.
   bool update(std::span<const Vec3> x_end, std::span<const Vec3> constraint_impulse);
-  // After the last pass: moves nodes (without pins) that end inside by more than the depth tolerance
-  // (solid_obstacles.h) to the surface and returns how many. Keeps the contacts for the next step.
+  // After the last pass: moves nodes (without pins) that end inside by more than the depth
+  // tolerance (solid_obstacles.h) to the surface and returns how many. Keeps the contacts for the
+  // next step.
   Index finish(std::span<Vec3> x_end);
   // The two halves of finish: a step that is given up in between has changed nothing that lasts.
   Index move_out(std::span<Vec3> x_end);

@@ -3,7 +3,8 @@
 // in, and the plane on which it may land. This is all that surface contact asks; ContactSet finds
 // its contacts with it. Knows neither friction nor what happened before.
 //
-//   way              from the node's start to x_end, m, straight as the solid sees it (solid_step.h)
+//   way              from the node's start to x_end, m, straight as the solid sees it
+//                    (solid_step.h)
 //   gap              distance from the solid's thickened surface, m; negative inside
 //   touch tolerance  m: a gap up to it counts as touching
 //   depth tolerance  m: how deep a node may end for now; the touch tolerance, or 2e-4 of the size

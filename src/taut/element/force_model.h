@@ -9,7 +9,7 @@
 // It hands out its numbers in two flat arrays; where they go in the matrix, with which sign, it
 // says once, in `connect`. The assembler gathers them row by row, which is parallel and gives the
 // same bits for any thread count. Adding a model: its header and source, one line in
-// scene/cloth_model.cpp, one test file.
+// sim/cloth_model.cpp, one test file.
 
 #include <span>
 #include <string>

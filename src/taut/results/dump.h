@@ -38,8 +38,8 @@ namespace taut {
 // anything else.
 void prepare_dump(const std::filesystem::path& folder);
 
-// Writes the system that `simulation` has just solved: to be called from SceneSimulation::on_solved.
-// Step numbers count from 1.
+// Writes the system that `simulation` has just solved: to be called from
+// SceneSimulation::on_solved. Step numbers count from 1.
 void write_dump(const std::filesystem::path& folder, SceneSimulation& simulation,
                 const SolveSummary& summary);
 

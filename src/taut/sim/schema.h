@@ -1,7 +1,7 @@
 #pragma once
-// What can be set, written down once: describe functions name every value with its meaning, unit and
-// range. Visitors walk them: the judge of values (sim/validator.h), and in scene/ the reader and the
-// writer of TOML and the reference page. A new key is one line in a describe function.
+// What can be set, written down once: describe functions name every value with its meaning, unit
+// and range. Visitors walk them: the judge of values (sim/validator.h), and in scene/ the reader
+// and the writer of TOML and the reference page. A new key is one line in a describe function.
 //
 // A visitor is handed references: a reader assigns to them, the others only read. Before the walk
 // the fields hold the defaults (reader, reference) or the values (writer, validator).

@@ -1,6 +1,6 @@
 #pragma once
-// Judges values that were set in a program by the same declarations, in the same words, that judge a
-// scene file: a visitor that reads everything and keeps what is wrong.
+// Judges values that were set in a program by the same declarations, in the same words, that judge
+// a scene file: a visitor that reads everything and keeps what is wrong.
 //
 //   cloth.0.density = -1 kg/m² is out of range: expected above 0, at most 1e+06 kg/m²
 //
