@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "sim/hanging_sheet.h"
+#include "taut/base/error.h"
 #include "taut/base/parallel.h"
 
 namespace taut::test {
