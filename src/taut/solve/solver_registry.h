@@ -6,7 +6,8 @@
 //   register_solver("own", [](const SolverOptions& o) { return std::make_unique<Own>(o); }, {...})
 //   register_preconditioner("own", [](const SolverOptions&) { return std::make_unique<OwnP>(); })
 //       gives mpcg:own, upcg:own and ppcg:own, preconditioned by M_p ~
-//         upcg         Ã = Uᵀ A U, n x n in blocks of ndof(i) x ndof(j), of 0 to 3 rows
+//         upcg         Ã = Uᵀ A U, n x n in blocks of ndof(i) x ndof(j), 0 to 3 each: the pattern
+//                      is another one whenever constraints come or go
 //         mpcg, ppcg   S A S + d (I-S), 3N x 3N in A's pattern, d a mass per node; of M_p⁻¹ its
 //                      part S M_p⁻¹ S counts
 //       M_p⁻¹ must be symmetric positive definite. Where it works block by block on nodes and does
