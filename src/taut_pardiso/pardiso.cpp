@@ -1,6 +1,7 @@
 #include "taut_pardiso/pardiso.h"
 
 #include "pardiso_factor.h"
+#include "taut/solve/solver_registry.h"
 #include "taut_pardiso/pardiso_cgs.h"
 
 namespace taut {
@@ -17,10 +18,15 @@ std::span<const Index> PardisoCholesky::permutation() const { return factor_->pe
 FactorStatistics PardisoCholesky::statistics() const { return factor_->statistics(); }
 
 void register_pardiso() {
-  register_cholesky("pardiso", [] { return std::make_unique<PardisoCholesky>(); });
-  register_solver("pardiso_cgs", [](const SolverOptions& options) {
-    return std::make_unique<PardisoCgs>(options);
-  });
+  static const bool once = [] {
+    register_cholesky("pardiso", [] { return std::make_unique<PardisoCholesky>(); });
+    register_solver(
+        "pardiso_cgs",
+        [](const SolverOptions& options) { return std::make_unique<PardisoCgs>(options); },
+        {.shows_iterates = false, .needs_backend = "pardiso"});
+    return true;
+  }();
+  static_cast<void>(once);
 }
 
 }  // namespace taut

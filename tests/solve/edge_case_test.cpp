@@ -8,6 +8,7 @@
 #include "solve/constrained_case.h"
 #include "taut/base/error.h"
 #include "taut/linalg/sparse_cholesky.h"
+#include "taut/solve/solver_registry.h"
 
 namespace taut::test {
 namespace {
@@ -220,8 +221,7 @@ TEST(SingularMatrix, IsNotSolvedByADirectMethod) {
   LinearSystem system;
   system.matrix = &a, system.rhs = b;
   for (const std::string& name : solver_names()) {
-    if (name.starts_with("cholmod") || name == "pardiso" || name == "eigen_ldlt" ||
-        name == "block_cholesky" || name == "auto") {
+    if (solver_traits(name).is_direct || name == "auto") {
       std::vector<double> x(3);
       const SolveSummary summary = make_solver(solver_options(name, 1e-6))->solve(system, x);
       // As it is stored the matrix may have an inverse, of 1e16.

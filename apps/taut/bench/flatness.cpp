@@ -20,6 +20,7 @@
 #include "taut/scene/scene_file.h"
 #include "taut/solve/core_spectrum.h"
 #include "taut/solve/reference.h"
+#include "taut/solve/solver_registry.h"
 
 namespace taut::app {
 
@@ -154,7 +155,7 @@ class Flatness {
                const EqualErrorResult& result) {
     Json row = facts;
     put(row, result);
-    if (result.solver.starts_with("core_")) {
+    if (solver_traits(result.solver).bounds_iterations) {
       row["lambda_min"] = spectrum.smallest, row["lambda_max"] = spectrum.largest,
       row["cond"] = spectrum.largest / spectrum.smallest;
       row["cond_bound"] = 2.0 * (1.0 + rho);

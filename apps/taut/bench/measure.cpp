@@ -13,22 +13,20 @@
 #include "taut/constraint/reduction.h"
 #include "taut/core/core_bound.h"
 #include "taut/solve/reference.h"
+#include "taut/solve/solver_registry.h"
 
 namespace taut::app {
 
 namespace {
 
-// These show their answer only: PARDISO's CG needs the factor of an earlier step, and auto decides
-// by its own stop rule. So their iterations cannot be cut at a wanted error.
+// Some show their answer only: PARDISO's CG needs the factor of an earlier step, and auto decides by
+// its own stop rule. So their iterations cannot be cut at a wanted error.
 bool method_hides_iterates(const Method& method) {
-  return method.solver == "pardiso_cgs" || method.solver == "auto";
+  return !solver_traits(method.solver).shows_iterates;
 }
 
-// These analyse once per topology: that is what is measured.
-bool keeps_analysis(const Method& method) {
-  return method.solver == "core_fast" || method.solver == "block_cholesky" ||
-         method.solver == "cholmod_reused_analysis" || method.solver == "auto";
-}
+// Analysed once per topology: that is what is measured.
+bool keeps_analysis(const Method& method) { return solver_traits(method.solver).keeps_analysis; }
 
 // One method's solver and its samples.
 struct Bench {
@@ -172,7 +170,7 @@ class Campaign {
     c.held_nodes =
         static_cast<Index>(std::ranges::count(system.constraints->ndofs(), std::int8_t{0}));
     c.nonzeros = static_cast<double>(nonzeros_of(c.method, stepper, *system.constraints));
-    if (c.method.solver.starts_with("core_pcg") || c.method.solver == "core_fast")
+    if (solver_traits(c.method.solver).bounds_iterations)
       c.bound_iterations = std::max(0.0, c.bound_iterations) +
                            core_iteration_bound(rho, s.start_value, options_.tolerance);
     bench.totals[step_] = s.total_ms();

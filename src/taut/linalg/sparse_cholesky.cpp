@@ -1,6 +1,9 @@
 #include "taut/linalg/sparse_cholesky.h"
 
 #include <map>
+#include <mutex>
+#include <shared_mutex>
+#include <utility>
 
 #include "taut/base/parallel.h"
 #include "taut/linalg/block_cholesky.h"
@@ -10,15 +13,26 @@ namespace taut {
 
 namespace {
 
-std::map<std::string, CholeskyFactory>& factories() {
-  static std::map<std::string, CholeskyFactory> known{
+struct Factories {
+  std::shared_mutex mutex;
+  std::map<std::string, CholeskyFactory> known{
       {"eigen", [] { return std::make_unique<EigenCholesky>(); }},
       {"block",
        [] { return std::make_unique<BlockCholesky>(CholeskyPrecision::double_precision); }},
       {"block_single",
        [] { return std::make_unique<BlockCholesky>(CholeskyPrecision::single_precision); }},
   };
-  return known;
+};
+
+Factories& factories() {
+  static Factories one;
+  return one;
+}
+
+CholeskyFactory find_factory(const std::string& name) {
+  const std::shared_lock lock(factories().mutex);
+  const auto at = factories().known.find(name);
+  return at == factories().known.end() ? CholeskyFactory() : at->second;
 }
 
 }  // namespace
@@ -34,17 +48,21 @@ Status SparseCholesky::solve_permuted(std::span<const double> b, std::span<doubl
 }
 
 void register_cholesky(const std::string& name, CholeskyFactory factory) {
-  factories()[name] = std::move(factory);
+  const std::unique_lock lock(factories().mutex);
+  factories().known[name] = std::move(factory);
 }
 
 std::unique_ptr<SparseCholesky> make_cholesky(const std::string& name) {
-  const auto it = factories().find(name);
-  return it == factories().end() ? nullptr : it->second();
+  const CholeskyFactory make = find_factory(name);
+  return make ? make() : nullptr;
 }
 
+bool has_cholesky(const std::string& name) { return find_factory(name) != nullptr; }
+
 std::vector<std::string> cholesky_names() {
+  const std::shared_lock lock(factories().mutex);
   std::vector<std::string> names;
-  for (const auto& [name, factory] : factories()) names.push_back(name);
+  for (const auto& [name, factory] : factories().known) names.push_back(name);
   return names;
 }
 

@@ -47,9 +47,10 @@ class SparseCholesky {
 
 using CholeskyFactory = std::function<std::unique_ptr<SparseCholesky>()>;
 
-// Makes a backend known under `name`; a later one of the same name replaces the earlier. Not while
-// solvers are being made.
+// Makes a backend known under `name`; a later one of the same name replaces the earlier. From any
+// thread.
 void register_cholesky(const std::string& name, CholeskyFactory factory);
+bool has_cholesky(const std::string& name);
 // The backend's object, or null when it is not registered. "eigen", "block" and "block_single"
 // (Taut's own in double and single precision) are always there.
 std::unique_ptr<SparseCholesky> make_cholesky(const std::string& name);

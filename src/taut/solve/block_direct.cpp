@@ -1,5 +1,7 @@
 #include "taut/solve/block_direct.h"
 
+#include <cassert>
+
 #include "taut/base/timer.h"
 #include "taut/linalg/vector_ops.h"
 #include "taut/solve/full_space.h"
@@ -39,6 +41,24 @@ void BlockDirect::run(const LinearSystem& system, std::span<double> x, SolveSumm
   summary.status = factor_.factorize(a, free_basis(system), load_);
   summary.factor_ms = timer.lap();
   if (!summary.status.ok()) return initial_guess(system, x);
+  finish(system, x, summary);
+}
+
+void BlockDirect::run_again(const LinearSystem& system, std::span<double> x,
+                            SolveSummary& summary) {
+  assert(pattern_ == system.matrix->pattern);
+  Timer timer;
+  load_without_prescribed(system, load_);
+  summary.reduce_ms = timer.lap();
+  factor_.solve_forward(load_);
+  const double forward_ms = timer.lap();
+  finish(system, x, summary);
+  summary.solve_ms += forward_ms;
+}
+
+// From the forward solve on.
+void BlockDirect::finish(const LinearSystem& system, std::span<double> x, SolveSummary& summary) {
+  Timer timer;
   factor_.solve_backward(0.0, free_part_);
   LinearSystem from_rest = system;
   from_rest.guess = {};

@@ -24,6 +24,19 @@ void Direct::run(const LinearSystem& system, std::span<double> x, SolveSummary& 
   if (summary.status.ok()) summary.status = cholesky_->factorize(reduced_.matrix());
   summary.factor_ms = timer.lap();
   if (!summary.status.ok()) return initial_guess(system, x);
+  solve_with_factor(system, x, summary);
+}
+
+void Direct::run_again(const LinearSystem& system, std::span<double> x, SolveSummary& summary) {
+  Timer timer;
+  reduced_.update_load(system);
+  summary.reduce_ms = timer.lap();
+  solve_with_factor(system, x, summary);
+}
+
+void Direct::solve_with_factor(const LinearSystem& system, std::span<double> x,
+                               SolveSummary& summary) {
+  Timer timer;
   summary.status = cholesky_->solve(reduced_.rhs(), reduced_.solution());
   reduced_.prolong_to(system, x);
   summary.solve_ms = timer.lap();

@@ -1,6 +1,6 @@
 #pragma once
 // Direct solution of the reduced system by sparse Cholesky (paper Section 4): analysis,
-// factorisation, one forward and one backward solve.
+// factorisation, one forward and one backward solve. solve_again() takes the last factor.
 
 #include "taut/linalg/sparse_cholesky.h"
 #include "taut/solve/reduced_system.h"
@@ -19,10 +19,12 @@ class Direct : public ConstrainedSolver {
          AnalysisUse analysis = AnalysisUse::by_option);
 
  protected:
-  bool is_direct() const override { return true; }
   void run(const LinearSystem& system, std::span<double> x, SolveSummary& summary) override;
+  void run_again(const LinearSystem& system, std::span<double> x, SolveSummary& summary) override;
 
  private:
+  void solve_with_factor(const LinearSystem& system, std::span<double> x, SolveSummary& summary);
+
   std::unique_ptr<SparseCholesky> cholesky_;
   ReducedSystem reduced_;
   bool analyzed_ = false;

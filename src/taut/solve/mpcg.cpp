@@ -43,6 +43,7 @@ void Mpcg::run(const LinearSystem& system, std::span<double> x, SolveSummary& su
   const BlockCsr& source = source_.full(system, choice_.source);
   summary.reduce_ms = timer.lap();
   if (!m_ || !options_.reuse_analysis) m_ = choice_.make(options_, nullptr);
+  if (choice_.wants_near_null_space) m_->set_near_null_space(near_null_space(system, false));
   const Preconditioner& m = *m_;
   summary.status = m_->update(source);
   summary.remark = m.remark();

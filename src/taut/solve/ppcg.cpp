@@ -9,6 +9,26 @@
 
 namespace taut {
 
+namespace {
+
+// S M_p⁻¹, on free directions symmetric like M_p⁻¹: of one that does not keep to them.
+class FreePart : public Preconditioner {
+ public:
+  FreePart(const Preconditioner& m, const ConstraintSet* constraints)
+      : m_(m), constraints_(constraints) {}
+  Status update(const BlockCsr&) override { return {}; }
+  void apply(std::span<const double> r, std::span<double> z) const override {
+    m_.apply(r, z);
+    project_free(constraints_, z);
+  }
+
+ private:
+  const Preconditioner& m_;
+  const ConstraintSet* constraints_;
+};
+
+}  // namespace
+
 void Ppcg::run(const LinearSystem& system, std::span<double> x, SolveSummary& summary) {
   Timer timer;
   const std::size_t n = x.size();
@@ -47,7 +67,10 @@ void Ppcg::run(const LinearSystem& system, std::span<double> x, SolveSummary& su
       assemble(part);
       observer(iteration, value, x);
     };
-  take_over(pcg(BlockCsrOperator(filtered_), *m_, rhs, y, options), summary);
+  const FreePart free_part(*m_, system.constraints);
+  const Preconditioner& whole = *m_;
+  const Preconditioner& m = choice_.keeps_free_directions ? whole : free_part;
+  take_over(pcg(BlockCsrOperator(filtered_), m, rhs, y, options), summary);
   assemble(y);
   summary.solve_ms = timer.lap();
 }

@@ -29,18 +29,30 @@ std::unique_ptr<Preconditioner> make_ssor(const SolverOptions& options, const Co
 
 }  // namespace
 
-namespace preconditioner {
-using enum PreconditionerSource;
-const PreconditionerChoice diagonal{unconstrained, make_projected<NodeDiagonal::scalar>};
-const PreconditionerChoice block_diagonal{unconstrained, make_projected<NodeDiagonal::block>};
-const PreconditionerChoice reduced_diagonal{blocks, make_plain<DiagonalPreconditioner>};
-const PreconditionerChoice projected_block_diagonal{blocks,
-                                                    make_plain<BlockDiagonalPreconditioner>};
-const PreconditionerChoice ic0{constrained, make_plain<BlockIncompleteCholesky>};
-const PreconditionerChoice ic0_core{core, make_plain<BlockIncompleteCholesky>};
-const PreconditionerChoice ssor{constrained, make_ssor};
-const PreconditionerChoice amg{constrained, make_plain<SmoothedAggregation>, true};
-}  // namespace preconditioner
+std::vector<NamedPreconditioner> builtin_preconditioners() {
+  using enum PreconditionerSource;
+  using enum PcgMethod;
+  const PreconditionerChoice diagonal{unconstrained, make_projected<NodeDiagonal::scalar>},
+      block_diagonal{unconstrained, make_projected<NodeDiagonal::block>},
+      reduced_diagonal{blocks, make_plain<DiagonalPreconditioner>},
+      projected_block_diagonal{blocks, make_plain<BlockDiagonalPreconditioner>},
+      ic0{constrained, make_plain<BlockIncompleteCholesky>},
+      ic0_core{core, make_plain<BlockIncompleteCholesky>}, ssor{constrained, make_ssor},
+      amg{constrained, make_plain<SmoothedAggregation>, true};
+  return {
+      {"diagonal", diagonal, {mpcg, upcg}},
+      {"block_diagonal", block_diagonal, {mpcg, upcg}},
+      {"block_diagonal", projected_block_diagonal, {ppcg}},
+      // depends on the choice of U
+      {"reduced_diagonal", reduced_diagonal, {upcg}},
+      {"projected_block_diagonal", projected_block_diagonal, {mpcg, upcg}},
+      {"ic0", ic0, {mpcg, upcg, ppcg}},
+      {"ic0_core", ic0_core, {mpcg, upcg, ppcg}},
+      {"ssor", ssor, {mpcg, upcg, ppcg}},
+      // not block-wise: for the methods that take it as it is
+      {"amg", amg, {upcg, ppcg}},
+  };
+}
 
 std::vector<std::uint8_t> core_mask(const LinearSystem& system) {
   std::vector<std::uint8_t> mask(system.core.begin(), system.core.end());

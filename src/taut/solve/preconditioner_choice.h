@@ -15,7 +15,10 @@
 // directions, which S removes: MPCG with them takes uPCG's steps. The same for the pre-filtered
 // form.
 
+#include <functional>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "taut/constraint/reduction.h"
 #include "taut/linalg/preconditioner.h"
@@ -27,24 +30,27 @@ namespace taut {
 enum class PreconditionerSource { unconstrained, constrained, core, blocks };
 
 struct PreconditionerChoice {
-  PreconditionerSource source;
+  PreconditionerSource source = PreconditionerSource::constrained;
   // The constraints are given where they are needed: for unconstrained sources in the reduced
   // space. They need not outlive update().
-  std::unique_ptr<Preconditioner> (*make)(const SolverOptions& options,
-                                          const ConstraintSet* constraints);
+  std::function<std::unique_ptr<Preconditioner>(const SolverOptions& options,
+                                                const ConstraintSet* constraints)>
+      make;
   bool wants_near_null_space = false;
+  // In full space M_p⁻¹ takes free directions to free ones. Else its part S M_p⁻¹ S is what counts.
+  bool keeps_free_directions = true;
 };
 
-namespace preconditioner {
-extern const PreconditionerChoice diagonal;        // diag(A)
-extern const PreconditionerChoice block_diagonal;  // the diagonal blocks of A
-// diag(Ã): depends on the choice of U; for uPCG only
-extern const PreconditionerChoice reduced_diagonal;
-extern const PreconditionerChoice projected_block_diagonal;  // the diagonal blocks of Ã
-extern const PreconditionerChoice ic0, ic0_core, ssor;
-// not block-wise: for uPCG and the pre-filtered form, which do not need it to commute with S
-extern const PreconditionerChoice amg;
-}  // namespace preconditioner
+// The methods that a preconditioner may be for.
+enum class PcgMethod { mpcg, upcg, ppcg };
+
+struct NamedPreconditioner {
+  std::string name;
+  PreconditionerChoice choice;
+  std::vector<PcgMethod> methods = {PcgMethod::mpcg, PcgMethod::upcg, PcgMethod::ppcg};
+};
+// Those that Taut has. The first for a method is what the method's plain name means.
+std::vector<NamedPreconditioner> builtin_preconditioners();
 
 // The rigid motions of the free unknowns, S R or Uᵀ R; only translations where the system has no
 // positions, empty where its nodes are not in space.

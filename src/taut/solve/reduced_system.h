@@ -11,6 +11,8 @@ class ReducedSystem {
  public:
   // Forms Ã, b̃ = Uᵀ(b - A(I-S)z) and ỹ0 = Uᵀ guess. True if the pattern of Ã changed.
   bool update(const LinearSystem& system);
+  // b̃ and ỹ0 only: Ã stays.
+  void update_load(const LinearSystem& system);
   const BlockCsr& matrix() const { return reduction_.matrix(); }
   std::span<const double> rhs() const { return rhs_; }
   std::span<double> solution() { return solution_; }

@@ -46,7 +46,7 @@ Stepper::Stepper(Index nodes, std::vector<const ForceModel*> models, ExternalFor
       solver_(make_solver(solver)),
       newton_(newton),
       chooses_core_(solver.chooses_core()),
-      wants_rho_(solver.name == "auto" || solver.name.starts_with("core_")),
+      wants_rho_(solver_->traits().needs_rho),
       a_(assembler_.pattern()) {
   take_core(stretch_core(), core_);
   if (integrator_->is_nonlinear()) relinearised_a_ = a_;

@@ -15,7 +15,7 @@
 namespace taut {
 
 // Makes the backend "pardiso" known to make_cholesky(), and the solver "pardiso_cgs"
-// (pardiso_cgs.h) to make_solver().
+// (pardiso_cgs.h) to make_solver(). Once: later calls do nothing.
 void register_pardiso();
 
 class PardisoFactor;
