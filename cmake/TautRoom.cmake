@@ -1,10 +1,13 @@
 # A room is one folder of src/taut: an object library that may include only the rooms it names.
-#   taut_room(NAME ROOMS base linalg LIBRARIES Eigen3::Eigen PRIVATE_LIBRARIES PkgConfig::cairo PRIVATE_HEADERS cairo_canvas.h)
-# PRIVATE_HEADERS are those that include a header of a private library, or another private header: they are not installed.
+#   taut_room(NAME ROOMS base linalg LIBRARIES Eigen3::Eigen PRIVATE_LIBRARIES PkgConfig::cairo
+#             PRIVATE_HEADERS cairo_canvas.h)
+# PRIVATE_HEADERS are those that include a header of a private library, or another private header:
+# they are not installed.
 # libtaut is made of all rooms; a test program of a room links only that room and those below it.
 function(taut_room name)
   cmake_parse_arguments(arg "" "" "ROOMS;LIBRARIES;PRIVATE_LIBRARIES;PRIVATE_HEADERS" ${ARGN})
-  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cpp ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*/*.cpp)
+  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cpp
+       ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*/*.cpp)
   set(all_rooms ${name})
   set(all_libraries ${arg_LIBRARIES} ${arg_PRIVATE_LIBRARIES})
   foreach(room IN LISTS arg_ROOMS)
@@ -28,7 +31,7 @@ function(taut_room name)
   add_library(taut_room_${name} OBJECT ${sources})
   target_include_directories(taut_room_${name} PUBLIC ${CMAKE_SOURCE_DIR}/src)
   target_link_libraries(taut_room_${name} PRIVATE taut_compile_options ${all_libraries})
-  taut_precompile(taut_room_${name} rooms <Eigen/Geometry> <fmt/format.h> <algorithm> <functional> <memory> <span> <string> <vector>)
+  taut_unity(taut_room_${name})
   target_compile_definitions(taut_room_${name} PRIVATE TAUT_VERSION="${PROJECT_VERSION}")
 endfunction()
 

@@ -1,5 +1,7 @@
-# Installs the build into an empty folder, then configures, builds and runs a project that knows only that folder.
-#   cmake -D BUILD=... -D WORK=... -D GENERATOR=... -D COMPILER=... -D HAS_APP=ON -D HAS_CHOLMOD=ON -D HAS_PARDISO=ON -P find_package_test.cmake
+# Installs the build into an empty folder, then configures, builds and runs a project that knows
+# only that folder.
+#   cmake -D BUILD=... -D WORK=... -D GENERATOR=... -D COMPILER=... -D HAS_APP=ON -D HAS_CHOLMOD=ON
+#         -D HAS_PARDISO=ON -P find_package_test.cmake
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE code OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(NOT code EQUAL 0)
@@ -19,7 +21,8 @@ endfunction()
 
 file(REMOVE_RECURSE ${WORK})
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
-run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/consumer -B ${WORK}/build -G ${GENERATOR} -D CMAKE_CXX_COMPILER=${COMPILER}
+run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/consumer -B ${WORK}/build -G ${GENERATOR}
+    -D CMAKE_CXX_COMPILER=${COMPILER}
     -D CMAKE_BUILD_TYPE=Release -D CMAKE_PREFIX_PATH=${WORK}/prefix -D EXPECT_CHOLMOD=${HAS_CHOLMOD}
     -D EXPECT_PARDISO=${HAS_PARDISO})
 run(${CMAKE_COMMAND} --build ${WORK}/build)
@@ -32,7 +35,17 @@ else()
 endif()
 if(HAS_APP)
   run(${WORK}/prefix/bin/taut --help)
-  if(EXISTS ${CMAKE_CURRENT_LIST_DIR}/../../build/viewer/index.html AND NOT EXISTS ${WORK}/prefix/share/taut/viewer/index.html)
+  if(HAS_CHOLMOD)  # runs a scene that was installed, in a folder that has none
+    file(MAKE_DIRECTORY ${WORK}/elsewhere)
+    execute_process(COMMAND ${WORK}/prefix/bin/taut bench table2 --nodes 1681 --k-stretch 60
+                            --steps 1
+                    WORKING_DIRECTORY ${WORK}/elsewhere COMMAND_ERROR_IS_FATAL ANY OUTPUT_QUIET)
+  endif()
+  if(NOT EXISTS ${WORK}/prefix/share/taut/scenes/ball.toml)
+    message(FATAL_ERROR "the scenes were not installed")
+  endif()
+  if(EXISTS ${CMAKE_CURRENT_LIST_DIR}/../../build/viewer/index.html
+     AND NOT EXISTS ${WORK}/prefix/share/taut/viewer/index.html)
     message(FATAL_ERROR "the viewer's page has been built, but was not installed")
   endif()
 endif()
