@@ -12,6 +12,8 @@ install(TARGETS taut EXPORT tautTargets)
 install(EXPORT tautTargets NAMESPACE taut:: DESTINATION ${taut_cmake_folder})
 if(TARGET taut_app)
   install(TARGETS taut_app)
+  # The benches run them.
+  install(DIRECTORY ${CMAKE_SOURCE_DIR}/scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/taut)
   # The page of `taut view`, if npm has built it: ./taut view or `npm run build` in viewer/.
   install(DIRECTORY ${CMAKE_SOURCE_DIR}/build/viewer/
           DESTINATION ${CMAKE_INSTALL_DATADIR}/taut/viewer OPTIONAL)

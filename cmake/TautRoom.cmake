@@ -31,8 +31,7 @@ function(taut_room name)
   add_library(taut_room_${name} OBJECT ${sources})
   target_include_directories(taut_room_${name} PUBLIC ${CMAKE_SOURCE_DIR}/src)
   target_link_libraries(taut_room_${name} PRIVATE taut_compile_options ${all_libraries})
-  taut_precompile(taut_room_${name} rooms <Eigen/Geometry> <fmt/format.h> <algorithm> <functional>
-                  <memory> <span> <string> <vector>)
+  taut_unity(taut_room_${name})
   target_compile_definitions(taut_room_${name} PRIVATE TAUT_VERSION="${PROJECT_VERSION}")
 endfunction()
 

@@ -82,7 +82,7 @@ void add_roofline(CLI::App& parent, int& exit_code) {
                    "Sizes: 1681, 6561, 25921 (default: these), 103041, 263169")
       ->check(CLI::IsMember({1681, 6561, 25921, 103041, 263169}));
   verb->add_option("--scenes", arguments->options.scenes,
-                   "Folder of the scene files (default: scenes)");
+                   "Folder of the scene files (default: those that came with Taut)");
   verb->footer("Example: taut bench roofline --nodes 25921 --threads 2 --json out/roofline.json");
   verb->callback([=, &exit_code] {
     set_threads(arguments->threads);
@@ -109,7 +109,7 @@ NewBench add_bench(CLI::App& parent, const char* name, const char* description,
                    "Threads, also of CHOLMOD's BLAS and of PARDISO (default 1, as in the paper)")
       ->check(between(1, 1024));
   verb->add_option("--scenes", arguments->options.scenes,
-                   "Folder of the scene files (default: scenes)");
+                   "Folder of the scene files (default: those that came with Taut)");
   verb->footer(fmt::format("Example: taut bench {0} --json out/{0}.json --plot out/{0}.png", name));
   verb->callback([=, &exit_code] { exit_code = run_bench(name, bench, *arguments); });
   return {verb, arguments};

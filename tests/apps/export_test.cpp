@@ -53,6 +53,58 @@ TEST(Export, WritesClothsAndSolids) {
   EXPECT_EQ(read_text(folder / "points/sheet.pc2").size(), 32u + 3 * 72 * 12);
 }
 
+TEST(Export, WritesTheFileThatIsAskedFor) {
+  const WorkFolder folder;
+  run_small(folder, {"--frames", "2"});
+  const auto exported = [&](const Names& more) {
+    Names arguments{"export", "r", "--out"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const ProgramEnd end = taut(folder, arguments);
+    EXPECT_EQ(end.exit_code, 0) << end.err;
+    return end.out.substr(end.out.rfind(' ') + 1);
+  };
+  ASSERT_EQ(taut(folder, {"export", "r", "--format", "usd", "--out", "u"}).exit_code, 0);
+  ASSERT_EQ(taut(folder, {"export", "r", "--format", "gltf", "--out", "g"}).exit_code, 0);
+  EXPECT_EQ(exported({"name.usda"}), "name.usda\n");
+  EXPECT_EQ(exported({"made/Fine name.usd", "--format", "usd"}), "name.usd\n");
+  EXPECT_EQ(exported({"made/b.glb"}), "made/b.glb\n");
+  EXPECT_EQ(read_text(folder / "name.usda"), read_text(folder / "u/sequence.usda"));
+  EXPECT_EQ(read_text(folder / "made/Fine name.usd"), read_text(folder / "u/sequence.usda"));
+  EXPECT_EQ(read_text(folder / "made/b.glb"), read_text(folder / "g/sequence.glb"));
+  EXPECT_EQ(exported({"o/n.obj"}), "o/n_*.obj\n");
+  EXPECT_EQ(names_in(folder / "o"), (Names{"n_sheet_000000.obj", "n_sheet_000001.obj",
+                                           "n_sheet_000002.obj", "n_solid_0.obj"}));
+  EXPECT_EQ(exported({"p/n.pc2"}), "p/n_*.pc2\n");
+  EXPECT_EQ(names_in(folder / "p"), (Names{"n_sheet.obj", "n_sheet.pc2", "n_solid_0.obj"}));
+  EXPECT_EQ(exported({"v/a&b.pvd", "--frames", "1"}), "v/a&b.pvd\n");
+  EXPECT_EQ(names_in(folder / "v"), (Names{"a&b.pvd", "a&b_sheet_000001.vtp", "a&b_solid_0.vtp"}));
+  EXPECT_NE(read_text(folder / "v/a&b.pvd").find("file=\"a&amp;b_sheet_000001.vtp\""),
+            std::string::npos);
+  fs::create_directory(folder / "folder.obj");
+  ASSERT_EQ(taut(folder, {"export", "r", "--format", "ply", "--out", "folder.obj"}).exit_code, 0);
+  EXPECT_EQ(names_in(folder / "folder.obj").size(), 4u);
+}
+
+TEST(Export, AFileOfAnotherKindIsRefused) {
+  const WorkFolder folder;
+  run_small(folder, {"--frames", "1"});
+  const ProgramEnd sister = taut(folder, {"export", "r", "--out", "a.usdc"});
+  EXPECT_EQ(sister.exit_code, 1);
+  EXPECT_NE(sister.err.find("a.usdc: files ending in .usdc are not written; USD is written as "
+                            "text: .usda"),
+            std::string::npos)
+      << sister.err;
+  const ProgramEnd other = taut(folder, {"export", "r", "--out", "a.obj", "--format", "usd"});
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_NE(other.err.find("--out a.obj is a file of the format obj, --format says usd"),
+            std::string::npos)
+      << other.err;
+  const ProgramEnd unknown = taut(folder, {"export", "r", "--out", "a.abc"});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_NE(unknown.err.find("in which format? --format usd|obj|"), std::string::npos)
+      << unknown.err;
+}
+
 // A PC2 file says how many frames are between two samples: chosen frames must not play faster.
 TEST(Export, PointCachesOfChosenFramesPlayAtTheirSpeed) {
   const WorkFolder folder;

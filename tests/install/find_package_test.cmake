@@ -35,6 +35,15 @@ else()
 endif()
 if(HAS_APP)
   run(${WORK}/prefix/bin/taut --help)
+  if(HAS_CHOLMOD)  # runs a scene that was installed, in a folder that has none
+    file(MAKE_DIRECTORY ${WORK}/elsewhere)
+    execute_process(COMMAND ${WORK}/prefix/bin/taut bench table2 --nodes 1681 --k-stretch 60
+                            --steps 1
+                    WORKING_DIRECTORY ${WORK}/elsewhere COMMAND_ERROR_IS_FATAL ANY OUTPUT_QUIET)
+  endif()
+  if(NOT EXISTS ${WORK}/prefix/share/taut/scenes/ball.toml)
+    message(FATAL_ERROR "the scenes were not installed")
+  endif()
   if(EXISTS ${CMAKE_CURRENT_LIST_DIR}/../../build/viewer/index.html
      AND NOT EXISTS ${WORK}/prefix/share/taut/viewer/index.html)
     message(FATAL_ERROR "the viewer's page has been built, but was not installed")

@@ -29,7 +29,10 @@ double light_of_the_sky(std::span<const Surface> surfaces) {
   for (int y = 0; y < 32; ++y)
     for (int x = 0; x < 32; ++x)
       for (const std::uint32_t first : {0U, 8U}) {
-        light_points(scene, lights, PixelPattern(x, y, 16), first, points, active, view, colours);
+        const PixelPattern pattern(x, y, 16);
+        Packet<PixelSample> samples;
+        for (std::uint32_t i = 0; i < packet_size; ++i) samples[i] = {&pattern, first + i};
+        light_points(scene, lights, samples, points, active, view, colours);
         for (const Vec3f& c : colours) sum += c.mean();
       }
   return sum / (32 * 32 * 16);

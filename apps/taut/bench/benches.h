@@ -6,11 +6,12 @@
 #include <vector>
 
 #include "bench/report.h"
+#include "shipped.h"
 
 namespace taut::app {
 
 struct BenchOptions {
-  std::string scenes = "scenes";  // folder of ball.toml, pinned.toml, drape.toml
+  std::string scenes = scenes_folder();  // folder of ball.toml, pinned.toml, drape.toml
   int steps = 20;
   double tolerance = 1e-3;
   std::vector<int> nodes;        // table2: 1681, 6561, 25921; empty: all

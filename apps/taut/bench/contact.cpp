@@ -50,7 +50,7 @@ struct Means {
   }
 };
 
-Json to_json(const std::string& scene, const StepReport& r, int threads) {
+Json step_json(const std::string& scene, const StepReport& r, int threads) {
   return {{"scene", scene},
           {"nodes", r.nodes},
           {"solver", r.solver},
@@ -76,14 +76,14 @@ void advance(SceneSimulation& simulation, StepReport& record) {
   if (const Status status = simulation.step(record); !status.ok()) throw InputError(status.message);
 }
 
-struct Experiment {
+struct ContactRun {
   const char* scene;
   int k_nodes;           // nodes along each side
   double step;           // s; 0: the scene's
   double skip, measure;  // s
 };
 
-void measure(const Experiment& e, const BenchOptions& options, TextTable& table, Json& rows) {
+void measure(const ContactRun& e, const BenchOptions& options, TextTable& table, Json& rows) {
   const int side = options.nodes.empty() ? e.k_nodes : side_of(options.nodes.front());
   std::vector<std::string> settings{fmt::format("cloth.grid.nodes=[{0},{0}]", side),
                                     "solver.name=auto"};
@@ -94,7 +94,7 @@ void measure(const Experiment& e, const BenchOptions& options, TextTable& table,
   Means means;
   while (simulation.state().time < e.skip + e.measure) {
     advance(simulation, record);
-    rows.push_back(to_json(e.scene, record, thread_count()));
+    rows.push_back(step_json(e.scene, record, thread_count()));
     if (record.time > e.skip) means.add(record);
   }
   table.add(means.row(e.scene, simulation.cloth().nodes()));
@@ -259,14 +259,14 @@ Json stress(const BenchOptions& options) {
 
 Json bench_contact(const BenchOptions& options) {
   if (options.stress >= 0) return stress(options);
-  const Experiment experiments[] = {
+  const ContactRun experiments[] = {
       {"ball", 161, 3.67e-3, 0.0, 0.2},
       {"clump", options.full ? 161 : 81, 0.0, 0.4, options.full ? 0.6 : 0.3}};
   Json rows = Json::array();
   TextTable table({"scene", "nodes", "near ms", "impulses ms", "detection ms", "zones ms",
                    "contact ms", "check ms", "step ms", "pairs tested", "near pairs", "impacts",
                    "zone nodes"});
-  for (const Experiment& e : experiments) measure(e, options, table, rows);
+  for (const ContactRun& e : experiments) measure(e, options, table, rows);
   fmt::print(
       "{}\nMeans a step; of clump in its heap. Paper (Figure 4, 25,921 nodes): 1,080 ms of contact "
       "a step on its machine.\n",

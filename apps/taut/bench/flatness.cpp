@@ -66,7 +66,7 @@ class Flatness {
     SceneSimulation simulation(
         read_scene(options_.scenes + "/ball.toml",
                    std::vector<std::string>{grid, "cloth.k_stretch=6000", "time.step=3.67e-3",
-                                            "time.frames=100000"}));
+                                            "time.frames=100000", "solver.name=core_pcg"}));
     fmt::print(stderr, "flatness: {} nodes, up to {} steps into contact ...\n", side_ * side_,
                steps_in_contact);
     run_into_contact(simulation, steps_in_contact);

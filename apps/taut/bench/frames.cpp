@@ -47,11 +47,11 @@ constexpr const char* methods[] = {"upcg:diagonal",
                                    "upcg:ssor",
                                    "upcg:ic0",
                                    "core_pcg"};
-struct Experiment {
+struct FrameRun {
   const char* scene;
   int steps_in_contact;
 };
-constexpr Experiment experiments[] = {{"ball", 20}, {"drape", 80}};
+constexpr FrameRun frame_runs[] = {{"ball", 20}, {"drape", 80}};
 
 ConstraintSet in_frames(const ConstraintSet& constraints, const FrameKind& kind) {
   ConstraintSet result = constraints;
@@ -66,7 +66,7 @@ ConstraintSet in_frames(const ConstraintSet& constraints, const FrameKind& kind)
   return result;
 }
 
-void measure(const Experiment& experiment, const BenchOptions& options, Json& rows) {
+void measure(const FrameRun& experiment, const BenchOptions& options, Json& rows) {
   SceneSimulation simulation(
       read_scene(fmt::format("{}/{}.toml", options.scenes, experiment.scene),
                  std::vector<std::string>{"solid.0.friction=0", "solver.name=core_fast",
@@ -113,7 +113,7 @@ void measure(const Experiment& experiment, const BenchOptions& options, Json& ro
 
 Json bench_frames(const BenchOptions& options) {
   Json rows = Json::array();
-  for (const Experiment& experiment : experiments) measure(experiment, options, rows);
+  for (const FrameRun& experiment : frame_runs) measure(experiment, options, rows);
   return rows;
 }
 

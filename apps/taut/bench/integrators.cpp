@@ -21,9 +21,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* scene_names[] = {"pinned", "ball"};
-constexpr IntegratorKind kinds[] = {IntegratorKind::semi_implicit_euler, IntegratorKind::imex,
-                                    IntegratorKind::imex_adaptive, IntegratorKind::bdf2,
-                                    IntegratorKind::newton};
+constexpr IntegratorKind integrators[] = {IntegratorKind::semi_implicit_euler, IntegratorKind::imex,
+                                          IntegratorKind::imex_adaptive, IntegratorKind::bdf2,
+                                          IntegratorKind::newton};
 constexpr double longest_step = 6.67e-3;  // s; the paper's at 1,681 nodes
 constexpr int longest_steps = 60;
 constexpr int refinements[] = {1, 2, 4};
@@ -92,7 +92,7 @@ class Integrators {
     const Motion fine = simulate(scene, k, IntegratorKind::newton, reference_refinements[1]);
     std::vector<Vec3> exact(fine.x.size());
     for (std::size_t i = 0; i < exact.size(); ++i) exact[i] = 2.0 * fine.x[i] - coarse.x[i];
-    for (const IntegratorKind kind : kinds)
+    for (const IntegratorKind kind : integrators)
       for (const int refinement : refinements) {
         fmt::print(stderr, "integrators:   {}, h/{}\n", name_of(kind), refinement);
         add(scene, k, kind, refinement, simulate(scene, k, kind, refinement), exact);

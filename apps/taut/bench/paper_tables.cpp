@@ -6,7 +6,7 @@ namespace {
 
 constexpr std::string_view semi = "semi_implicit_euler", imex = "imex";
 
-const PaperRow rows[] = {
+const PaperRow published[] = {
     // Table 1: 6,561 nodes, 3.67 ms.
     {"pinned", 6561, semi, 60, "mpcg", 35, 0.25},
     {"pinned", 6561, semi, 60, "upcg", 35, 0.22},
@@ -68,11 +68,11 @@ const PaperRow rows[] = {
 
 }  // namespace
 
-std::span<const PaperRow> paper_rows() { return rows; }
+std::span<const PaperRow> paper_rows() { return published; }
 
 const PaperRow* paper_row(std::string_view scene, int nodes, std::string_view integrator,
                           int k_stretch, std::string_view method) {
-  for (const PaperRow& row : rows)
+  for (const PaperRow& row : published)
     if (row.scene == scene && row.nodes == nodes && row.integrator == integrator &&
         (row.k_stretch == k_stretch || row.k_stretch == 0) && row.method == method)
       return &row;

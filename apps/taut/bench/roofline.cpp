@@ -157,8 +157,8 @@ std::string share(double value, double peak) {
   return value > 0.0 && peak > 0.0 ? fmt::format("{:.0f} %", 100.0 * value / peak) : "-";
 }
 
-nlohmann::ordered_json to_json(const RooflineRow& r, const PeakRates& peak,
-                               const MachineFacts& machine) {
+nlohmann::ordered_json phase_json(const RooflineRow& r, const PeakRates& peak,
+                                  const MachineFacts& machine) {
   nlohmann::ordered_json json{
       {"scene", "ball"},          {"nodes", r.nodes},           {"phase", r.phase},
       {"precision", r.precision}, {"threads", machine.threads}, {"ms", r.milliseconds}};
@@ -217,7 +217,7 @@ nlohmann::ordered_json bench_roofline(const BenchOptions& options, const Machine
            fmt::format("{:.1f}", flop_rate),
            share(flop_rate, r.precision == "single" ? peak.single_GF_per_s : peak.double_GF_per_s),
            fmt::format("{:.1f}", byte_rate), share(byte_rate, r.read_GB_per_s)});
-      json["rows"].push_back(to_json(r, peak, machine));
+      json["rows"].push_back(phase_json(r, peak, machine));
     }
     fmt::print("{}\n", table.text());
     std::fflush(stdout);

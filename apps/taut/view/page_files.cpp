@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <vector>
 
+#include "shipped.h"
 #include "taut/base/error.h"
 #include "taut/base/file.h"
 
@@ -33,9 +34,7 @@ fs::path page_folder() {
                      "the viewer's page");
   }
   std::error_code failure;
-  const fs::path program = fs::read_symlink("/proc/self/exe", failure);
-  for (const fs::path& folder :
-       {program.parent_path().parent_path() / "share/taut/viewer", fs::path(TAUT_BUILT_PAGE)})
+  for (const fs::path& folder : {share_folder() / "viewer", source_folder() / "build/viewer"})
     if (fs::exists(folder / "index.html", failure)) return folder;
   throw InputError(
       "the viewer's page has not been built; `./taut view DIR` in Taut's sources builds it (it "

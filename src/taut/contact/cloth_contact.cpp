@@ -19,16 +19,14 @@ namespace {
 
 constexpr double separation_share = 1e-2;  // of the thickness: what is surely kept
 constexpr double gap_share = 0.5;          // of the thickness: where colliding pairs should end
-// of the thickness: how much further apart than at the start they need to end
-constexpr double parting_share = 0.2;
-constexpr double tolerance_share = 1e-3;  // of the thickness: rows this well met are met
+constexpr double tolerance_share = 1e-3;   // of the thickness: rows this well met are met
 constexpr int repulsion_iterations = 8, impulse_iterations = 6;
 // from then on colliding pairs need to end only half as far apart, and again
 constexpr int full_sweeps = 4;
 constexpr int most_zone_rounds = 1000;
 // of the thickness: how well a zone has to fit what it is attached to
 constexpr double fit_share = 0.1;
-constexpr Index node_grain = 2048;
+constexpr Index vertex_grain = 2048;
 
 struct Trouble {
   std::vector<CollidingPair> pairs;
@@ -63,7 +61,7 @@ struct ClothContact::Work {
   void meet_rows(int iterations, double tolerance) {
     satisfy_rows(rows, *slabs, x1, awake, moved, iterations, tolerance);
     restore_angular_momentum(rows, mass, step.inverse_mass, step.lever, x1, moved);
-    parallel_for(static_cast<Index>(rows.size()), node_grain, [&](Index begin, Index end) {
+    parallel_for(static_cast<Index>(rows.size()), vertex_grain, [&](Index begin, Index end) {
       for (Index k = begin; k < end; ++k) rows[k].pushed.setZero();
     });
     std::ranges::fill(awake, std::uint8_t{0});
@@ -121,7 +119,7 @@ void ClothContact::repel(Work& work) {
   work.slabs.emplace(vertices, work.step.x0);
   work.rows.resize(vertices.size());
   const PairForces forces(work.step.forces, surface_->vertices);
-  parallel_for(static_cast<Index>(vertices.size()), node_grain, [&](Index begin, Index end) {
+  parallel_for(static_cast<Index>(vertices.size()), vertex_grain, [&](Index begin, Index end) {
     for (Index k = begin; k < end; ++k) {
       ContactRow& row = work.rows[work.slabs->place(k)];
       row = k < std::ssize(near)
@@ -161,7 +159,7 @@ void ClothContact::find_trouble(Work& work, std::span<const std::uint8_t> moved)
   if (!work.step.solids || work.step.solids->solids().empty()) return;
   const Index nodes = work.step.solids->nodes();
   std::vector<std::uint8_t> blocked(static_cast<std::size_t>(nodes), 0);
-  parallel_for(nodes, node_grain, [&](Index begin, Index end) {
+  parallel_for(nodes, vertex_grain, [&](Index begin, Index end) {
     for (Index i = begin; i < end; ++i)
       blocked[i] = !work.step.held[i] && (moved.empty() || moved[i]) &&
                    work.step.solids->obstacle(i, work.x1[i]);

@@ -8,8 +8,8 @@ namespace taut {
 
 namespace {
 
-constexpr Index chunk = 1024;                  // pairs handled by one task
-constexpr double rounding_share = 1.0 - 1e-9;  // of the slack
+constexpr Index chunk = 1024;                 // pairs handled by one task
+constexpr double certain_share = 1.0 - 1e-9;  // of the slack
 
 bool any_in(const std::array<Index, 4>& nodes, std::span<const std::uint8_t> marked) {
   return marked[nodes[0]] | marked[nodes[1]] | marked[nodes[2]] | marked[nodes[3]];
@@ -115,7 +115,7 @@ std::vector<NearPair> PairSearch::near(
 
 // Sees to it that what comes within `separation` on the way to x1 is a candidate.
 void PairSearch::follow(std::span<const Vec3> x0, std::span<const Vec3> x1, double separation) {
-  const double slack = 0.5 * rounding_share * (reach_ - separation);
+  const double slack = 0.5 * certain_share * (reach_ - separation);
   far_.assign(x1.size(), 0);
   bool any = false;
   for (std::size_t v = 0; v < x1.size(); ++v) {

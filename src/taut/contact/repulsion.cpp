@@ -2,10 +2,6 @@
 
 namespace taut {
 
-namespace {
-constexpr double parting_share = 0.2;
-}
-
 ContactRow repulsion_row(const NearPair& near, double thickness, double friction) {
   ContactRow row;
   row.node = near.pair.node;

@@ -11,6 +11,9 @@
 
 namespace taut {
 
+// Of the thickness: how much further apart than at the start pairs need to end.
+inline constexpr double parting_share = 0.2;
+
 ContactRow repulsion_row(const NearPair& near, double thickness, double friction);
 
 }  // namespace taut

@@ -8,7 +8,7 @@ namespace taut {
 namespace {
 
 // Solids as they stand at the start.
-std::vector<Solid> still(std::span<const Solid> solids) {
+std::vector<Solid> solids_at_rest(std::span<const Solid> solids) {
   std::vector<Solid> result(solids.begin(), solids.end());
   for (Solid& solid : result) {
     solid.initial = solid.pose(0.0);
@@ -32,7 +32,7 @@ class Settling {
     pins_.reset(nodes);
     for (Index i = 0; i < nodes; ++i)
       if (input.held[i]) pins_.fix(i, Vec3::Zero());
-    solids_ = std::make_unique<SolidContact>(still(input.solids), nodes, input.contact);
+    solids_ = std::make_unique<SolidContact>(solids_at_rest(input.solids), nodes, input.contact);
     for (Index v = 0; v < input.surface.vertices; ++v)
       inverse_mass_.push_back(input.held[v] ? 0.0 : 1.0 / input.mass[v]);
   }

@@ -10,6 +10,7 @@
 #include "taut/base/file.h"
 #include "taut/io/little_endian.h"
 #include "taut/io/obj.h"
+#include "taut/io/pc2.h"
 
 namespace taut {
 
@@ -17,7 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view pc2_magic{"POINTCACHE2\0", 12};
 constexpr std::size_t pc2_header = 32, pc2_points = 16, pc2_samples = 28;
 
 [[noreturn]] void fail(const fs::path& path, const std::string& what) {

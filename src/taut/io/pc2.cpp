@@ -15,11 +15,10 @@ namespace taut {
 
 namespace {
 
-constexpr std::string_view magic{"POINTCACHE2\0", 12};
 constexpr std::streamoff sample_count_position = 28;
 
 std::string header(Index points, float start_frame, float sample_rate) {
-  std::string bytes(magic);
+  std::string bytes(pc2_magic);
   append_little_endian(bytes, std::int32_t{1});
   append_little_endian(bytes, points);
   append_little_endian(bytes, start_frame);

@@ -15,11 +15,15 @@
 #include <filesystem>
 #include <fstream>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "taut/base/types.h"
 
 namespace taut {
+
+// What such a file begins with.
+inline constexpr std::string_view pc2_magic{"POINTCACHE2\0", 12};
 
 struct PointCache {
   Index points = 0;

@@ -12,7 +12,6 @@ namespace taut {
 
 namespace {
 
-constexpr std::string_view magic{"POINTCACHE2\0", 12};
 constexpr std::size_t header_size = 32;
 constexpr std::size_t point_size = 3 * sizeof(float);
 
@@ -22,11 +21,11 @@ struct Header {
 };
 
 Header checked_header(const std::string& file, const std::string& bytes) {
-  if (bytes.size() < header_size || !std::string_view(bytes).starts_with(magic))
+  if (bytes.size() < header_size || !std::string_view(bytes).starts_with(pc2_magic))
     throw InputError({file},
                      "is no PC2 point cache: the 32 bytes of its header, beginning with "
                      "POINTCACHE2, were expected");
-  const char* at = bytes.data() + magic.size();
+  const char* at = bytes.data() + pc2_magic.size();
   const auto version = read_little_endian<std::int32_t>(at);
   if (version != 1)
     throw InputError(

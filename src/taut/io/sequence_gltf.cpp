@@ -41,7 +41,7 @@ void check_size(const SequenceOptions& options, const std::vector<SequenceObject
   for (const SequenceObject& object : objects) bytes += bytes_of(object, options.frames);
   if (bytes <= most_bytes) return;
   throw InputError(
-      {(options.folder / "sequence.glb").string()},
+      {options.main_file("sequence.glb").string()},
       fmt::format("would have {:.0f} MiB for {} frames, more than the {:.0f} MiB that programs "
                   "open; export every tenth frame or "
                   "so (--frames FIRST:LAST:STEP), or use the format usd, which has no such limit",
@@ -205,7 +205,7 @@ class GltfSequence : public SequenceWriter {
     append_little_endian(head, static_cast<std::uint32_t>(12 + 8 + json.size() + 8) + data_size);
     append_little_endian(head, static_cast<std::uint32_t>(json.size()));
     append_little_endian(data_head, data_size);
-    write_file(file("sequence.glb"), [&](std::ostream& out) {
+    write_file(options().main_file("sequence.glb"), [&](std::ostream& out) {
       out << head << "JSON" << json << data_head << std::string_view("BIN\0", 4);
       bytes_.copy_to(out);
     });

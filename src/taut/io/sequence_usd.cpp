@@ -1,4 +1,4 @@
-// sequence.usda: USD as text. One Mesh prim an object under /World; topology and texture
+// sequence.usda, or the name chosen: USD as text. One Mesh prim an object under /World; topology and texture
 // coordinates once, points and extent at every frame, for what does not move once. The time code is
 // the frame's number, timeCodesPerSecond makes seconds of it.
 //
@@ -60,7 +60,7 @@ class UsdSequence : public SequenceWriter {
   using SequenceWriter::SequenceWriter;
 
   void finish() override {
-    write_file(file("sequence.usda"), [&](std::ostream& out) {
+    write_file(options().main_file("sequence.usda"), [&](std::ostream& out) {
       out << stage();
       for (std::size_t k = 0; k < prims_.size(); ++k) write_prim(out, objects()[k], prims_[k]);
       out << "}\n";

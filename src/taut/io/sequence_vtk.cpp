@@ -94,12 +94,20 @@ void write_vtp(const std::filesystem::path& path, const SequenceObject& object,
   });
 }
 
+// As the value of an attribute.
+std::string escaped(const std::string& text) {
+  std::string result;
+  for (const char c : text)
+    result += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '"' ? "&quot;" : std::string(1, c);
+  return result;
+}
+
 class VtkSequence : public SequenceWriter {
  public:
   using SequenceWriter::SequenceWriter;
 
   void finish() override {
-    write_file(file("sequence.pvd"),
+    write_file(options().main_file("sequence.pvd"),
                "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" "
                "byte_order=\"LittleEndian\">\n  <Collection>\n" +
                    entries_ + "  </Collection>\n</VTKFile>\n");
@@ -115,7 +123,7 @@ class VtkSequence : public SequenceWriter {
       if (object.moves || is_first()) write_vtp(file(name), object, frame[k], time);
       entries_ +=
           fmt::format("    <DataSet timestep=\"{}\" group=\"{}\" part=\"{}\" file=\"{}\"/>\n", time,
-                      object.stem, k, name);
+                      escaped(object.stem), k, escaped(name));
     }
   }
 

@@ -5,7 +5,8 @@
 //            only the points move
 //   frame    points and fields of every object at one time; in the order of the objects
 //   stem     an object's name in files and inside them: letters, digits and _, no two alike (set by
-//            make_sequence_writer)
+//            make_sequence_writer); where the caller has chosen a file name and the format writes
+//            several, the names of these begin with it
 //
 // A format is a class derived from SequenceWriter in a source of its own, a line in the list of
 // sequence_formats.cpp with its declaration in sequence_formats.h, and a test. Coordinates arrive
@@ -50,6 +51,7 @@ enum class UpAxis { y, z };
 
 struct SequenceOptions {
   std::filesystem::path folder;
+  std::string file_name = {};  // with its ending; empty: the format's usual names
   std::string title;
   int first_frame = 0;
   int frames = 1;               // that will come at most, for formats that are limited in size
@@ -57,6 +59,11 @@ struct SequenceOptions {
   double frame_interval = 0.0;  // s from one frame number to the next
   UpAxis up = UpAxis::z;
   double metres_per_unit = 1.0;
+
+  // The file that holds everything, or lists all others.
+  std::filesystem::path main_file(const char* usual_name) const {
+    return folder / (file_name.empty() ? usual_name : file_name);
+  }
 };
 
 class SequenceWriter {
@@ -92,6 +99,8 @@ class SequenceWriter {
 struct SequenceFormat {
   const char* name;
   const char* description;  // what files it makes
+  const char* endings;      // that a chosen file name may have: ".usda .usd"
+  bool is_one_file;         // for all frames and objects
   UpAxis usual_up;
   std::unique_ptr<SequenceWriter> (*make)(SequenceOptions options,
                                           std::vector<SequenceObject> objects);
@@ -100,6 +109,9 @@ struct SequenceFormat {
 std::span<const SequenceFormat> sequence_formats();
 // Throws InputError for a name that is none of sequence_formats().
 const SequenceFormat& sequence_format(const std::string& name);
+// The format whose files end as this name does; null where none does. Throws InputError, saying what
+// to give instead, for a kind of file that only sisters of are written (.usdc).
+const SequenceFormat* sequence_format_of(const std::filesystem::path& file_name);
 std::unique_ptr<SequenceWriter> make_sequence_writer(const SequenceFormat& format,
                                                      SequenceOptions options,
                                                      std::vector<SequenceObject> objects);

@@ -26,9 +26,9 @@ bool invert_pivot(const double* block, double* inverse) {
 // Row by row (the IKJ variant): W = A's row; for each k before i: L_ik = W_ik
 // D_k⁻¹, W_ij -= W_ik U_kj.
 template <int n>
-class Factorization {
+class Elimination {
  public:
-  Factorization(const BlockCsr& a, BlockLdu& factor)
+  Elimination(const BlockCsr& a, BlockLdu& factor)
       : a_(a), factor_(factor), layout_(factor.layout()), slot_(layout_.node.size(), nullptr) {}
 
   Index run() {
@@ -85,8 +85,8 @@ class Factorization {
 
 Status BlockIncompleteLu::update(const BlockCsr& a) {
   factor_.set_pattern(a.pattern, false);
-  const Index broken = factor_.layout().block == 1 ? Factorization<1>(a, factor_).run()
-                                                   : Factorization<3>(a, factor_).run();
+  const Index broken = factor_.layout().block == 1 ? Elimination<1>(a, factor_).run()
+                                                   : Elimination<3>(a, factor_).run();
   if (broken < 0) return {};
   if (!all_finite(a.values)) return {Outcome::not_finite, "the matrix holds NaN or infinity"};
   return {

@@ -64,25 +64,25 @@ void make_frame(const Vec3f& n, Vec3f& x, Vec3f& y) {
   y = n.cross(x);
 }
 
-void light_points(const RayScene& scene, const Lights& lights, const PixelPattern& pattern,
-                  std::uint32_t first, const Packet<ShadePoint>& points, const Packet<bool>& active,
+void light_points(const RayScene& scene, const Lights& lights, const Packet<PixelSample>& samples,
+                  const Packet<ShadePoint>& points, const Packet<bool>& active,
                   const Packet<Vec3f>& view, Packet<Vec3f>& colours) {
   Rays key_rays, sky_rays;
   for (std::size_t i = 0; i < packet_size; ++i) {
     key_rays.active[i] = sky_rays.active[i] = active[i];
     if (!active[i]) continue;
     const ShadePoint& p = points[i];
-    const auto index = first + static_cast<std::uint32_t>(i);
-    key_rays.direction[i] =
-        disc_point(lights.key, lights.key_x, lights.key_y, lights.key_radius, pattern.key.at(index))
-            .normalized();
+    const auto& [pattern, number] = samples[i];
+    key_rays.direction[i] = disc_point(lights.key, lights.key_x, lights.key_y, lights.key_radius,
+                                       pattern->key.at(number))
+                                .normalized();
     const float side = p.facing.dot(key_rays.direction[i]) > 0.0F ? 1.0F : -1.0F;
     key_rays.origin[i] = p.position + side * lights.offset * p.facing;
 
     // A point of the unit disc lifted onto the hemisphere has the density cosine / pi.
     Vec3f x, y;
     make_frame(p.normal, x, y);
-    const Vec3f flat = disc_point(Vec3f::Zero(), x, y, 1.0F, pattern.sky.at(index));
+    const Vec3f flat = disc_point(Vec3f::Zero(), x, y, 1.0F, pattern->sky.at(number));
     sky_rays.direction[i] = flat + std::sqrt(std::max(0.0F, 1.0F - flat.squaredNorm())) * p.normal;
     sky_rays.origin[i] = p.position + lights.offset * p.facing;
   }

@@ -29,10 +29,16 @@ struct PixelPattern {
   PixelSamples place, key, sky;
 };
 
-// Linear colours, rolled off below 1, of the points whose lane is active; lane i takes
-// sample first + i. view: unit vectors from the camera to the points.
-void light_points(const RayScene& scene, const Lights& lights, const PixelPattern& pattern,
-                  std::uint32_t first, const Packet<ShadePoint>& points, const Packet<bool>& active,
+// A sample of a pixel.
+struct PixelSample {
+  const PixelPattern* pattern = nullptr;
+  std::uint32_t number = 0;
+};
+
+// Linear colours, rolled off below 1, of the points whose lane is active. view: unit vectors from
+// the camera to the points.
+void light_points(const RayScene& scene, const Lights& lights, const Packet<PixelSample>& samples,
+                  const Packet<ShadePoint>& points, const Packet<bool>& active,
                   const Packet<Vec3f>& view, Packet<Vec3f>& colours);
 
 // Any two unit vectors that make a right-handed frame with the unit vector n.

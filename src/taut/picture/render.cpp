@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 #include "taut/base/error.h"
 #include "taut/base/parallel.h"
@@ -76,6 +78,13 @@ struct PixelSum {
   }
 };
 
+struct Pixel {
+  Pixel(int x_, int y_, int samples) : x(x_), y(y_), pattern(x_, y_, samples) {}
+  int x, y;
+  detail::PixelPattern pattern;
+  PixelSum sum;
+};
+
 class Renderer {
  public:
   Renderer(std::span<const Surface> surfaces, const Camera& camera, const RenderOptions& options);
@@ -85,11 +94,11 @@ class Renderer {
   void set_lights(const CameraAxes& axes, double distance);
   void set_ground(const Camera& camera, double distance);
   void draw_row(int y, std::uint8_t* rgb) const;
-  Vec3f pixel_colour(int x, int y) const;
-  // Adds the pixel's next `count` samples; each ends as background, or as a point of a surface or
-  // the ground over it.
-  void add_packet(int x, int y, const detail::PixelPattern& pattern, int count,
-                  PixelSum& sum) const;
+  // With as many more samples as it needs.
+  Vec3f settled_colour(Pixel& pixel) const;
+  // Adds the next `count` samples of each of the pixels, a packet at most together; each ends as
+  // background, or as a point of a surface or the ground over it.
+  void add_samples(std::span<Pixel> pixels, int count) const;
   std::optional<detail::ShadePoint> seen_point(const Vec3f& direction, const detail::Hits& hits,
                                                std::size_t lane) const;
   Vec3f ray_direction(float x, float y) const;
@@ -155,21 +164,28 @@ Image Renderer::draw() const {
   return image;
 }
 
+// Most pixels are settled by half of their samples: the others go only where those differ
+// (outlines, soft shadows, creases). Where half of them are few, neighbours share a packet.
 void Renderer::draw_row(int y, std::uint8_t* rgb) const {
-  for (int x = 0; x < options_.width; ++x) {
-    const Vec3f colour = pixel_colour(x, y);
-    for (int k = 0; k < 3; ++k) *rgb++ = detail::to_srgb_byte(colour[k]);
+  const int first_samples =
+      std::min({packet_size, options_.samples, std::max(4, options_.samples / 2)});
+  std::vector<Pixel> pixels;
+  for (int x = 0; x < options_.width;) {
+    pixels.clear();
+    for (int k = 0; k < packet_size / first_samples && x < options_.width; ++k, ++x)
+      pixels.emplace_back(x, y, options_.samples);
+    add_samples(pixels, first_samples);
+    for (Pixel& pixel : pixels) {
+      const Vec3f colour = settled_colour(pixel);
+      for (int k = 0; k < 3; ++k) *rgb++ = detail::to_srgb_byte(colour[k]);
+    }
   }
 }
 
-// Most pixels are settled by half of their samples: the others go only where those differ
-// (outlines, soft shadows, creases).
-Vec3f Renderer::pixel_colour(int x, int y) const {
-  const detail::PixelPattern pattern(x, y, options_.samples);
-  PixelSum sum;
-  do {
-    add_packet(x, y, pattern, std::min(packet_size, options_.samples - sum.count), sum);
-  } while (sum.count < options_.samples && !(2 * sum.count >= options_.samples && sum.settled()));
+Vec3f Renderer::settled_colour(Pixel& pixel) const {
+  const PixelSum& sum = pixel.sum;
+  while (sum.count < options_.samples && !(2 * sum.count >= options_.samples && sum.settled()))
+    add_samples({&pixel, 1}, std::min(packet_size, options_.samples - sum.count));
   return sum.colour / static_cast<float>(sum.count);
 }
 
@@ -194,18 +210,24 @@ std::optional<detail::ShadePoint> Renderer::seen_point(const Vec3f& direction,
   return std::nullopt;
 }
 
-void Renderer::add_packet(int x, int y, const detail::PixelPattern& pattern, int count,
-                          PixelSum& sum) const {
-  const auto lanes = static_cast<std::size_t>(count);
-  const auto first = static_cast<std::uint32_t>(sum.count);
+void Renderer::add_samples(std::span<Pixel> pixels, int count) const {
+  const std::size_t lanes = pixels.size() * static_cast<std::size_t>(count);
+  const auto pixel_of = [&](std::size_t lane) -> Pixel& {
+    return pixels[lane / static_cast<std::size_t>(count)];
+  };
+  Packet<detail::PixelSample> samples;
   detail::Rays rays;
   Packet<float> rows;
   for (std::size_t i = 0; i < lanes; ++i) {
-    const auto jitter = pattern.place.at(first + static_cast<std::uint32_t>(i));
-    rows[i] = static_cast<float>(y) + jitter[1];
+    const Pixel& pixel = pixel_of(i);
+    samples[i] = {&pixel.pattern,
+                  static_cast<std::uint32_t>(pixel.sum.count) +
+                      static_cast<std::uint32_t>(i) % static_cast<std::uint32_t>(count)};
+    const auto jitter = pixel.pattern.place.at(samples[i].number);
+    rows[i] = static_cast<float>(pixel.y) + jitter[1];
     rays.active[i] = true;
     rays.origin[i] = eye_;
-    rays.direction[i] = ray_direction(static_cast<float>(x) + jitter[0], rows[i]);
+    rays.direction[i] = ray_direction(static_cast<float>(pixel.x) + jitter[0], rows[i]);
   }
   detail::Hits hits;
   scene_.nearest_hits(rays, hits);
@@ -219,10 +241,10 @@ void Renderer::add_packet(int x, int y, const detail::PixelPattern& pattern, int
   }
   Packet<Vec3f> colours;
   if (lit != Packet<bool>{})
-    detail::light_points(scene_, lights_, pattern, first, points, lit, rays.direction, colours);
+    detail::light_points(scene_, lights_, samples, points, lit, rays.direction, colours);
   for (std::size_t i = 0; i < lanes; ++i) {
     const Vec3f behind = background(rows[i]);
-    sum.add(lit[i] ? Vec3f(behind + points[i].cover * (colours[i] - behind)) : behind);
+    pixel_of(i).sum.add(lit[i] ? Vec3f(behind + points[i].cover * (colours[i] - behind)) : behind);
   }
 }
 

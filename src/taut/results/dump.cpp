@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* own_names[] = {
+constexpr const char* dump_names[] = {
     "A.mtx",        "A_core.mtx",  "K_stretch.mtx", "K_shear.mtx", "K_bend.mtx", "D_external.mtx",
     "S.mtx",        "U.mtx",       "M.mtx",         "b.mtx",       "z.mtx",      "x.mtx",
     "v.mtx",        "f.mtx",       "dv.mtx",        "x_prev.mtx",  "v_prev.mtx", "guess.mtx",
@@ -156,13 +156,13 @@ void prepare_dump(const fs::path& folder) {
     throw InputError({folder.string()}, "is a file; give a folder for the dump with --out");
   if (fs::exists(folder))
     for (const auto& entry : fs::directory_iterator(folder))
-      if (std::ranges::find(own_names, entry.path().filename().string()) == std::end(own_names))
+      if (std::ranges::find(dump_names, entry.path().filename().string()) == std::end(dump_names))
         throw InputError(
             {folder.string()},
             fmt::format(
                 "holds '{}', which is no part of a dump; give an empty or new folder with --out",
                 entry.path().filename().string()));
-  for (const char* name : own_names) fs::remove(folder / name);
+  for (const char* name : dump_names) fs::remove(folder / name);
 }
 
 void write_dump(const fs::path& folder, SceneSimulation& simulation, const SolveSummary& summary) {

@@ -80,6 +80,7 @@ SequenceExport::SequenceExport(const ResultFrames& frames, const SequenceExportO
     throw InputError("glTF files are Y-up by definition; leave out --up z");
   writer_ = make_sequence_writer(sequence_format(options.format),
                                  {.folder = options.folder,
+                                  .file_name = options.file_name,
                                   .title = frames.scene().title,
                                   .first_frame = options.first,
                                   .frames = (options.last - options.first) / options.stride + 1,
@@ -144,6 +145,13 @@ std::vector<std::filesystem::path> SequenceExport::files_of_other_frames() const
       others.push_back(entry.path());
   }
   return others;
+}
+
+std::string SequenceExport::written_to() const {
+  const std::filesystem::path file = options_.folder / options_.file_name;
+  if (options_.file_name.empty() || std::filesystem::exists(file)) return file.lexically_normal().string();
+  const std::string pattern = file.stem().string() + "_*" + file.extension().string();
+  return (options_.folder / pattern).lexically_normal().string();
 }
 
 void SequenceExport::finish() {

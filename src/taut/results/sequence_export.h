@@ -17,6 +17,7 @@ namespace taut {
 struct SequenceExportOptions {
   std::string format = "usd";
   std::filesystem::path folder;  // where to write
+  std::string file_name = {};  // as in SequenceOptions
   double scale = 1.0;
   std::optional<UpAxis> up;  // default: the format's usual
   int first = 0;
@@ -37,6 +38,9 @@ class SequenceExport {
   // Meshes in the folder that an earlier export of the same objects has left, of frames that this
   // one has not added: other programs would take them for part of the sequence.
   std::vector<std::filesystem::path> files_of_other_frames() const;
+  // Where what was written is: the folder, or the file that was chosen; where that was not one but
+  // several, a pattern of their names.
+  std::string written_to() const;
   // Ends what has at least one frame. Without it, what was begun is taken back.
   void finish();
 

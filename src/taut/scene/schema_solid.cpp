@@ -5,7 +5,7 @@
 namespace taut {
 
 namespace {
-constexpr std::array up_names{"z", "y"};
+constexpr std::array mesh_up_names{"z", "y"};
 }  // namespace
 
 void describe_solid(SchemaVisitor& v, SolidEntry& solid) {
@@ -31,7 +31,7 @@ void describe_solid(SchemaVisitor& v, SolidEntry& solid) {
             .applies = mesh,
             .only_for = mesh_only});
   int up = solid.y_up ? 1 : 0;
-  v.choose("up", up, up_names,
+  v.choose("up", up, mesh_up_names,
            {.doc = "the files' upward axis; `y` is turned to Taut's z",
             .applies = mesh,
             .only_for = mesh_only});

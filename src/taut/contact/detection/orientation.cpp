@@ -10,7 +10,7 @@ namespace {
 
 constexpr double u = 0x1p-53;
 // Products below this may have lost digits to underflow; then the exact value is computed.
-constexpr double underflow_bound = 1e-250;
+constexpr double underflow_error = 1e-250;
 
 int exact_orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   Expansion m[3][3];
@@ -41,7 +41,7 @@ int orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   // Each of the six products of three differences has passed at most 8 roundings: three
   // differences, two products, a subtraction, two additions (the first adds to 0 exactly). `size`
   // is too small by at most as much, so 8 u (1 + 8 u) size would do.
-  const double error = 10.0 * u * size + underflow_bound;
+  const double error = 10.0 * u * size + underflow_error;
   if (determinant > error) return 1;
   if (determinant < -error) return -1;
   return exact_orientation(a, b, c, d);
@@ -52,7 +52,7 @@ int orientation(const Vec3& a, const Vec3& b, const Vec3& c, int axis) {
   const double plus = (a[i] - c[i]) * (b[j] - c[j]), minus = (a[j] - c[j]) * (b[i] - c[i]);
   const double determinant = plus - minus;
   // Two differences, a product and a subtraction: at most 4 roundings.
-  const double error = 6.0 * u * (std::abs(plus) + std::abs(minus)) + underflow_bound;
+  const double error = 6.0 * u * (std::abs(plus) + std::abs(minus)) + underflow_error;
   if (determinant > error) return 1;
   if (determinant < -error) return -1;
   const Expansion exact = Expansion::difference(a[i], c[i]) * Expansion::difference(b[j], c[j]) -
