@@ -216,12 +216,12 @@ TEST(Assembler, BlockBoundsHoldInEveryState) {
 TEST(Assembler, CountsTheElementsOfACore) {
   const Sheet s(6, 5, BendModel::linear);
   const Assembler assembler(s.nodes, s.models, {true, true, true});
-  EXPECT_EQ(assembler.elements_in(assembler.core_mask(ForceClass::stretch)),
+  EXPECT_EQ(assembler.elements_of(assembler.core_mask(ForceClass::stretch)).inside,
             s.models[0]->block_count());
-  EXPECT_EQ(assembler.elements_in(assembler.core_mask(ForceClass::bend)),
+  EXPECT_EQ(assembler.elements_of(assembler.core_mask(ForceClass::bend)).inside,
             s.models[2]->block_count());
   const std::vector<std::uint8_t> all(static_cast<std::size_t>(assembler.pattern()->blocks()), 1);
-  EXPECT_EQ(assembler.elements_in(all),
+  EXPECT_EQ(assembler.elements_of(all).inside,
             s.models[0]->block_count() + s.models[1]->block_count() + s.models[2]->block_count());
 }
 

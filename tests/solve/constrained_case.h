@@ -20,7 +20,8 @@ struct ConstrainedCase {
   Index size() const { return a.dofs(); }
   LinearSystem system() const {
     LinearSystem s;
-    s.matrix = &a, s.rhs = b, s.constraints = &constraints, s.z = z, s.guess = guess, s.core = core;
+    s.matrix = &a, s.rhs = b, s.constraints = &constraints, s.z = z, s.guess = guess,
+    s.core.mask = core;
     return s;
   }
   void constrain(Index node, const Vec3& direction) {

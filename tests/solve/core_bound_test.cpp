@@ -235,7 +235,7 @@ TEST(CoreBound, HoldsForTheEigenvalues) {
       EXPECT_LE(lambda.maxCoeff(), 2.0 + rounding);
       EXPECT_GE(lambda.minCoeff(), 1.0 / (1.0 + sheet.rho) - rounding);
       LinearSystem system = sheet.c.system();
-      system.rho = sheet.rho;
+      system.core.rho = sheet.rho;
       const CoreSpectrum measured = measure_core_spectrum(system, 1e-3);
       EXPECT_NEAR(measured.smallest, lambda.minCoeff(), 1e-4 * lambda.minCoeff());
       EXPECT_NEAR(measured.largest, lambda.maxCoeff(), 1e-4 * lambda.maxCoeff());
@@ -259,7 +259,7 @@ TEST(CoreBound, HoldsForTheIterations) {
         if (constrained) sheet.constrain(random);
         std::vector<double> x(sheet.c.b.size());
         LinearSystem system = sheet.c.system();
-        system.rho = sheet.rho;
+        system.core.rho = sheet.rho;
         const SolveSummary summary =
             make_solver(solver_options("core_pcg", tolerance))->solve(system, x);
         ASSERT_TRUE(summary.status.ok()) << summary.status.message;

@@ -32,7 +32,7 @@ TEST(CoreFast, TakesTheStepsOfCorePcg) {
     std::vector<double> x(c.b.size()), expected(c.b.size());
     LinearSystem same = c.system();
     const std::vector<std::uint8_t> core = core_with_fill(c);
-    same.core = core;
+    same.core.mask = core;
     larger += std::ranges::count(core, 1) > std::ranges::count(c.core, 1);
     smaller_than_all += std::ranges::count(core, 0) > 0;
     LinearSystem system = c.system();
@@ -205,7 +205,7 @@ TEST(CoreFast, ProvesItsError) {
                     summary.error_bound * 1.01 + 1e-5);
           if (!summary.replaced) {
             EXPECT_LE(summary.error_bound,
-                      std::sqrt(1.0 + 2.0 * system.rho) * 1.01 * summary.stop_value + 1e-5);
+                      std::sqrt(1.0 + 2.0 * system.core.rho) * 1.01 * summary.stop_value + 1e-5);
           }
           EXPECT_LE(summary.iterations, summary.bound_iterations);
         }
@@ -229,7 +229,7 @@ TEST(CoreFast, LumpsNothingWhereThatFails) {
   LinearSystem system = c.system();
   const Eigen::VectorXd expected = c.solution();
   ASSERT_EQ(Eigen::LLT<Eigen::MatrixXd>(dense(c.a)).info(), Eigen::Success);
-  system.rho = 1.0;
+  system.core.rho = 1.0;
   std::vector<double> x(c.b.size());
   const SolveSummary summary = make_solver(solver_options("core_fast", 1e-8))->solve(system, x);
   ASSERT_TRUE(summary.status.ok()) << summary.status.message;
@@ -256,7 +256,7 @@ TEST(CoreFast, IsAsExactAsAskedForAtAnyStiffness) {
     // The stop test's norm and A's differ by the root of the condition that the core leaves, at
     // most; and nothing is more exact than the same method in double precision throughout.
     const std::vector<double> exact = reference_solution(system);
-    double bound = std::sqrt(2.0 * (1.0 + system.rho)) * tolerance;
+    double bound = std::sqrt(2.0 * (1.0 + system.core.rho)) * tolerance;
     const double error = anorm_error(system, x, exact);
     if (error >= bound) {
       ASSERT_TRUE(

@@ -94,7 +94,7 @@ struct MaterialSheet : ConstrainedCase {
   double rho(std::span<const std::uint8_t> mask) const { return remainder_ratio(a, mask, masses); }
   LinearSystem with_core(std::span<const std::uint8_t> mask) const {
     LinearSystem s = system();
-    s.core = mask, s.rho = rho(mask);
+    s.core = {"own", mask, rho(mask)};
     return s;
   }
   SolveSummary solve(const std::string& name, std::span<const std::uint8_t> mask,

@@ -42,6 +42,8 @@ struct Cloth {
   }
 };
 
+constexpr ForceClass stretch_only[] = {ForceClass::stretch};
+
 std::vector<std::uint8_t> mask_of(const Stepper& stepper) {
   return {stepper.core_mask().begin(), stepper.core_mask().end()};
 }
@@ -53,7 +55,8 @@ TEST(StepperCore, IsTheStretchSpringsOrChosen) {
         std::tuple{"auto", "", true}, std::tuple{"auto", "stretch", false}}) {
     Stepper stepper = cloth.stepper(solver, core);
     stepper.begin(cloth.state, 5e-3);
-    EXPECT_EQ(mask_of(stepper), chosen ? stepper.chosen_core(5e-3) : stepper.stretch_core())
+    EXPECT_EQ(mask_of(stepper),
+              chosen ? stepper.chosen_core(5e-3) : stepper.family_core(stretch_only))
         << solver << ", " << core;
     const Index stretch = cloth.springs[0]->block_count();
     if (chosen) {
@@ -61,7 +64,7 @@ TEST(StepperCore, IsTheStretchSpringsOrChosen) {
     } else {
       EXPECT_EQ(stepper.core_springs(), stretch);
     }
-    EXPECT_EQ(stepper.system().rho,
+    EXPECT_EQ(stepper.system().core.rho,
               remainder_ratio(stepper.matrix(), stepper.core_mask(), cloth.masses));
   }
 }
@@ -74,15 +77,19 @@ TEST(StepperCore, OffersOtherCoresWithTheirRho) {
     const LinearSystem system = stepper.system();
     const bool all_are_strong = h > 1e-2;
     // Where the paper's core leaves out little, it is the chosen one and there is no other.
-    EXPECT_EQ(system.stretch_core.mask.empty(), !all_are_strong);
-    EXPECT_EQ(system.unbent_core.mask.empty(), !all_are_strong);
+    EXPECT_EQ(system.core.name, "auto");
+    ASSERT_EQ(system.other_cores.size(), 2u);
+    EXPECT_EQ(system.other_cores[0].name, "stretch");
+    EXPECT_EQ(system.other_cores[1].name, "stretch+shear");
+    for (const Core& core : system.other_cores) EXPECT_EQ(core.mask.empty(), !all_are_strong);
     if (!all_are_strong) continue;
     const Index stretch = cloth.springs[0]->block_count(), shear = cloth.springs[1]->block_count();
-    EXPECT_EQ(stepper.core_springs(CoreUsed::stretch), stretch);
-    EXPECT_EQ(stepper.core_springs(CoreUsed::unbent), stretch + shear);
-    for (const OtherCore& core : {system.stretch_core, system.unbent_core})
+    EXPECT_EQ(stepper.core_springs("stretch"), stretch);
+    EXPECT_EQ(stepper.core_springs("stretch+shear"), stretch + shear);
+    EXPECT_EQ(stepper.core_springs("all"), stretch + shear + cloth.springs[2]->block_count());
+    for (const Core& core : system.other_cores)
       EXPECT_EQ(core.rho, remainder_ratio(stepper.matrix(), core.mask, cloth.masses));
-    EXPECT_LT(system.unbent_core.rho, system.stretch_core.rho);
+    EXPECT_LT(system.other_cores[1].rho, system.other_cores[0].rho);
   }
 }
 
@@ -114,21 +121,21 @@ TEST(StepperCore, StaysInShorterStepsAndWhateverTheClothDoes) {
     Stepper stepper = cloth.stepper("auto", "", kind);
     stepper.choose_core(5e-3);
     const std::vector<std::uint8_t> core = mask_of(stepper);
-    EXPECT_NE(core, stepper.stretch_core());
+    EXPECT_NE(core, stepper.family_core(stretch_only));
     for (const double h : {5e-3, 5e-3, 2.5e-3, 5e-3}) {
       stepper.begin(cloth.state, h);
       const SolveSummary summary = stepper.solve(cloth.constraints, {});
       // Newton's loop may end at its limit on this crumpled cloth; its systems are what counts
       // here.
       ASSERT_TRUE(summary.status.ok() || kind == IntegratorKind::newton) << summary.status.message;
-      EXPECT_LE(stepper.system().rho, 8.0 * (1.0 + 1e-6));
+      EXPECT_LE(stepper.system().core.rho, 8.0 * (1.0 + 1e-6));
       EXPECT_EQ(mask_of(stepper), core);
       stepper.commit(cloth.state);
     }
     // A longer one needs more.
     stepper.begin(cloth.state, 20e-3);
     EXPECT_NE(mask_of(stepper), core);
-    EXPECT_LE(stepper.system().rho, 8.0 * (1.0 + 1e-6));
+    EXPECT_LE(stepper.system().core.rho, 8.0 * (1.0 + 1e-6));
   }
 }
 

@@ -140,7 +140,7 @@ class Flatness {
                {"h", cell.h},
                {"integrator", "semi_implicit_euler"},
                {"rho", rho}};
-    facts["rho_of_auto"] = of_auto.rho;
+    facts["rho_of_auto"] = of_auto.core.rho;
     std::vector<EqualErrorResult> results;
     for (const std::string& method : methods_) {
       results.push_back(measure_equal_error(method == "auto" ? of_auto : system, method, reference,

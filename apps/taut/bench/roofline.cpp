@@ -84,7 +84,7 @@ class Phases {
     BlockCholesky factor(precision);
     Timer timer;
     if (const Status status =
-            factor.analyze(system.matrix->pattern, system.core, BlocksLeftOut::without_place);
+            factor.analyze(system.matrix->pattern, system.core.mask, BlocksLeftOut::without_place);
         !status.ok())
       throw InputError(status.message);
     if (single) add("core: analysis, once", 0.0, 0.0, name, timer.milliseconds());

@@ -1,33 +1,17 @@
 #pragma once
 // What a preconditioner made of some of a matrix's blocks leaves out, where it has the others
-// lumped into its diagonal (BlocksOutside in linalg/block_cholesky.h):
+// lumped into its diagonal (BlocksOutside in linalg/block_cholesky.h): A = P + E,
 //
-//   A = P + E       E: the blocks outside a mask, and on the diagonal what makes their rows sum to
-//   zero:  E c = Σ_j A_ij (c_j - c_i)
+//   (E c)_i = Σ_j A_ij (c_j - c_i)                   blocks outside a mask
+//   (E c)_a = ... + Σ A_ac (c_a - c_b + c_c - c_d)   where parallelograms stand in for some
 //
-// or, where parallelograms stand in for some of these blocks (linalg/parallelogram.h), for corner
-// a, and likewise for the others,
+// and with it conjugate gradients' product without reading A, from the known p' = P c':
 //
-//   E c = Σ_j A_ij (c_j - c_i) over the blocks that nothing stands in for  +  Σ A_ac (c_a - c_b +
-//   c_c - c_d)
-
-// and with it conjugate gradients' product without reading A. For the direction c = z + β c', z =
-// P⁻¹ r, of a method preconditioned by P itself, P c is known (Eisenstat 1981, SIAM J. Sci. Stat.
-// Comput. 2, had the same idea for SSOR):
+//   p = P c = r + β p'      q = A c = p + E c      cᵀq      (docs/mathematics.md, 5, "The product")
 //
-//   p = P c = r + β p'        q = A c = p + E c        cᵀq
-//
-// p is as exact as P⁻¹ was applied: in single precision that leaves a rounding error which only a
-// residual from A itself removes. So the blocks are kept in single precision too, which adds less
-// than that: their relative error u acts on differences, |δ(E c)| in the norm of M⁻¹ is at most
-// some u sqrt(ρ Σ_ij |A_ij| |c_j - c_i|²), next to nothing where c is smooth. Sums are in double
-// precision.
-//
-// 3x3 blocks, each of them symmetric, as springs' are: so each is kept once, and multiplied once
-// for all its nodes, the two of a spring or the four of a parallelogram. Rows are taken in batches,
-// each with all that acts on one of them: what acts on rows of several is multiplied in each. With
-// constraints (linalg/node_basis.h), p and q hold something in constrained directions that nobody
-// reads.
+// For springs: 3x3 blocks, each symmetric, kept once in single precision and multiplied once for
+// all its nodes. With constraints (linalg/node_basis.h), p and q hold something in constrained
+// directions that nobody reads.
 
 #include <cstdint>
 #include <memory>

@@ -119,6 +119,37 @@ double remainder_ratio(const BlockCsr& a, std::span<const std::uint8_t> core,
   return remainder_ratios(a, {&core, 1}, masses)[0];
 }
 
+double remainder_ratio(std::span<const Mat3> rest_diagonal, std::span<const double> masses) {
+  assert(rest_diagonal.size() == masses.size());
+  const Index rows = static_cast<Index>(masses.size()),
+              parts = (rows + rows_in_part - 1) / rows_in_part;
+  std::vector<double> largest(static_cast<std::size_t>(parts), 0.0);
+  parallel_for(parts, 1, [&](Index first_part, Index end_part) {
+    for (Index part = first_part; part < end_part; ++part)
+      for (Index i = rows_in_part * part; i < std::min(rows, rows_in_part * (part + 1)); ++i)
+        if (!rest_diagonal[i].isZero(0.0))
+          largest[part] = std::max(largest[part], largest_eigenvalue(rest_diagonal[i]) / masses[i]);
+  });
+  return largest.empty() ? 0.0 : *std::ranges::max_element(largest);
+}
+
+bool may_be_springs(const BlockCsr& a, std::span<const std::uint8_t> core) {
+  constexpr double rounding = 1e-9;
+  const BlockPattern& p = *a.pattern;
+  assert(p.uniform_dim == 3);
+  for (Index i = 0; i < p.rows(); ++i) {
+    if (!has_symmetric_blocks(a, core, i)) return false;
+    for (Index k = p.row_start[i]; k < p.row_start[i + 1]; ++k) {
+      if (core[k] || k == p.diagonal[i]) continue;
+      const Mat3 block = Eigen::Map<const Mat3, 0, Eigen::OuterStride<>>(
+          a.block(i, k), Eigen::OuterStride<>(p.width(i)));
+      const Eigen::SelfAdjointEigenSolver<Mat3> eigen(block, Eigen::EigenvaluesOnly);
+      if (!(eigen.eigenvalues()[2] <= rounding * block.norm())) return false;
+    }
+  }
+  return true;
+}
+
 double block_diagonal_condition(const BlockCsr& a) {
   const BlockPattern& p = *a.pattern;
   assert(p.uniform_dim > 0);

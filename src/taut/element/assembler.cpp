@@ -9,6 +9,8 @@ namespace taut {
 
 namespace {
 
+constexpr Index rows_per_task = 128;
+
 // A sink that ignores what it is not made for.
 struct MatrixSink : ConnectionSink {
   std::function<void(Index, Index, Index, int, bool)> on_matrix;
@@ -102,14 +104,23 @@ std::vector<std::uint8_t> Assembler::core_mask(ForceClass core_class) const {
   return mask;
 }
 
-std::vector<double> Assembler::block_bounds(double matrix_stiffness, double matrix_damping) const {
-  std::vector<double> own(static_cast<std::size_t>(block_base_.back())),
-      bounds(static_cast<std::size_t>(pattern_->blocks()), 0.0);
+// Of the blocks of the flat arrays.
+std::vector<double> Assembler::own_bounds(double matrix_stiffness, double matrix_damping) const {
+  std::vector<double> own(static_cast<std::size_t>(block_base_.back()));
   for (std::size_t m = 0; m < models_.size(); ++m)
     if (implicit_[m])
       models_[m]->bound_blocks(
           matrix_stiffness, matrix_damping,
           std::span(own).subspan(block_base_[m], block_base_[m + 1] - block_base_[m]));
+  return own;
+}
+
+std::vector<double> Assembler::block_bounds(double matrix_stiffness, double matrix_damping) const {
+  std::vector<double> own = own_bounds(matrix_stiffness, matrix_damping),
+                      bounds(static_cast<std::size_t>(pattern_->blocks()), 0.0);
+  for (std::size_t m = 0; m < models_.size(); ++m)
+    if (has_larger_elements(m))
+      std::fill(own.begin() + block_base_[m], own.begin() + block_base_[m + 1], 0.0);
   for (Index i = 0; i < pattern_->rows(); ++i)
     for (Index k = pattern_->row_start[i]; k < pattern_->row_start[i + 1]; ++k) {
       if (k == pattern_->diagonal[i]) continue;
@@ -119,42 +130,104 @@ std::vector<double> Assembler::block_bounds(double matrix_stiffness, double matr
   return bounds;
 }
 
-Index Assembler::elements_in(std::span<const std::uint8_t> mask) const {
-  Index count = 0;
-  for (Index i = 0; i < pattern_->rows(); ++i)
-    for (Index k = pattern_->diagonal[i] + 1; k < pattern_->row_start[i + 1]; ++k)
-      if (mask[k]) count += block_start_[k + 1] - block_start_[k];
-  return count;
+std::vector<LargerElement> Assembler::larger_elements(double matrix_stiffness,
+                                                      double matrix_damping) const {
+  const std::vector<double> own = own_bounds(matrix_stiffness, matrix_damping);
+  std::vector<LargerElement> elements;
+  for (std::size_t m = 0; m < models_.size(); ++m) {
+    if (!has_larger_elements(m)) continue;
+    const std::size_t first = elements.size();
+    const Index blocks = models_[m]->blocks_per_element();
+    elements.resize(first + static_cast<std::size_t>(models_[m]->block_count() / blocks));
+    MatrixSink sink;
+    sink.on_matrix = [&](Index id, Index row, Index column, int, bool) {
+      if (row != column) return;
+      LargerElement& e = elements[first + static_cast<std::size_t>(id / blocks)];
+      assert(e.nodes < LargerElement::most_nodes);
+      e.node[e.nodes] = row;
+      e.weight[e.nodes++] = own[block_base_[m] + id];
+    };
+    models_[m]->connect(sink);
+  }
+  return elements;
 }
 
-void Assembler::gather_row(Index i, const Diagonal& diagonal, BlockCsr& a) const {
+CoreElements Assembler::elements_of(std::span<const std::uint8_t> mask) const {
+  CoreElements core;
+  core.is_outside.assign(static_cast<std::size_t>(block_base_.back()), 0);
+  for (Index i = 0; i < pattern_->rows(); ++i)
+    for (Index k = pattern_->row_start[i]; k < pattern_->row_start[i + 1]; ++k) {
+      if (mask[k] || k == pattern_->diagonal[i]) continue;
+      for (Index c = block_start_[k]; c < block_start_[k + 1]; ++c)
+        core.is_outside[block_list_[c].id()] = 1;
+    }
+  for (std::size_t m = 0; m < models_.size(); ++m) {
+    const Index blocks = models_[m]->blocks_per_element();
+    for (Index first = block_base_[m]; first < block_base_[m + 1]; first += blocks) {
+      const auto own = std::span(core.is_outside).subspan(first, blocks);
+      if (std::ranges::count(own, 1) == 0) {
+        ++core.inside;
+        continue;
+      }
+      std::ranges::fill(own, 1);
+      core.nodes_outside = std::max(core.nodes_outside, models_[m]->nodes_per_element());
+    }
+  }
+  return core;
+}
+
+void Assembler::add(Contribution from, double (&sum)[9]) const {
+  const double* b = &blocks_[9 * static_cast<std::size_t>(from.id())];
+  const double sign = from.negative() ? -1.0 : 1.0;
+  if (from.transposed()) {
+    for (int r = 0; r < 3; ++r)
+      for (int q = 0; q < 3; ++q) sum[3 * r + q] += sign * b[3 * q + r];
+  } else {
+    for (int e = 0; e < 9; ++e) sum[e] += sign * b[e];
+  }
+}
+
+template <class IsTaken>
+void Assembler::gather_row(Index i, IsTaken is_taken, BlockCsr& a) const {
   const BlockPattern& p = *pattern_;
   const Index width = p.width(i);
   for (Index k = p.row_start[i]; k < p.row_start[i + 1]; ++k) {
     double sum[9] = {};
-    for (Index c = block_start_[k]; c < block_start_[k + 1]; ++c) {
-      const Contribution from = block_list_[c];
-      const double* b = &blocks_[9 * static_cast<std::size_t>(from.id())];
-      const double sign = from.negative() ? -1.0 : 1.0;
-      if (from.transposed()) {
-        for (int r = 0; r < 3; ++r)
-          for (int q = 0; q < 3; ++q) sum[3 * r + q] += sign * b[3 * q + r];
-      } else {
-        for (int e = 0; e < 9; ++e) sum[e] += sign * b[e];
-      }
-    }
+    for (Index c = block_start_[k]; c < block_start_[k + 1]; ++c)
+      if (is_taken(block_list_[c].id())) add(block_list_[c], sum);
     if (k == p.diagonal[i]) {
-      const double mass = diagonal.mass * diagonal.masses[i];
+      const double mass = diagonal_.mass * diagonal_.masses[i];
       for (int r = 0; r < 3; ++r) sum[4 * r] += mass;
-      if (!diagonal.damping.empty())
+      if (!diagonal_.damping.empty())
         for (int r = 0; r < 3; ++r)
           for (int q = 0; q < 3; ++q)
-            sum[3 * r + q] += diagonal.external * diagonal.damping[i](r, q);
+            sum[3 * r + q] += diagonal_.external * diagonal_.damping[i](r, q);
     }
     double* out = a.block(i, k);
     for (int r = 0; r < 3; ++r)
       for (int q = 0; q < 3; ++q) out[r * width + q] = sum[3 * r + q];
   }
+}
+
+void Assembler::gather_core(const CoreElements& core, BlockCsr& matrix) const {
+  assert(matrix.pattern == pattern_ && !diagonal_.masses.empty());
+  parallel_for(pattern_->rows(), rows_per_task, [&](Index begin, Index end) {
+    for (Index i = begin; i < end; ++i)
+      gather_row(i, [&](Index id) { return !core.is_outside[id]; }, matrix);
+  });
+}
+
+void Assembler::gather_rest_diagonal(const CoreElements& core, std::span<Mat3> diagonal) const {
+  assert(static_cast<Index>(diagonal.size()) == pattern_->rows());
+  parallel_for(pattern_->rows(), rows_per_task, [&](Index begin, Index end) {
+    for (Index i = begin; i < end; ++i) {
+      const Index k = pattern_->diagonal[i];
+      double sum[9] = {};
+      for (Index c = block_start_[k]; c < block_start_[k + 1]; ++c)
+        if (core.is_outside[block_list_[c].id()]) add(block_list_[c], sum);
+      diagonal[i] = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(sum);
+    }
+  });
 }
 
 void Assembler::assemble(std::span<const ForceRequest> requests, const Diagonal& diagonal,
@@ -174,9 +247,10 @@ void Assembler::assemble(std::span<const ForceRequest> requests, const Diagonal&
     if (implicit_[m] && !requests[m].wants_matrix()) std::ranges::fill(block_part, 0.0);
     models_[m]->evaluate(requests[m], block_part, vector_part);
   }
-  parallel_for(pattern_->rows(), 128, [&](Index begin, Index end) {
+  diagonal_ = diagonal;
+  parallel_for(pattern_->rows(), rows_per_task, [&](Index begin, Index end) {
     for (Index i = begin; i < end; ++i) {
-      gather_row(i, diagonal, a);
+      gather_row(i, [](Index) { return true; }, a);
       Vec3 sum = Vec3::Zero();
       for (Index c = vector_start_[i]; c < vector_start_[i + 1]; ++c) {
         const Contribution from = vector_list_[c];

@@ -8,8 +8,10 @@
 // The pattern is that of the *implicit* models (IMEX leaves shear and bend out: the "thin matrix")
 // and is built once. Each step, elements are evaluated in parallel into flat arrays and then
 // gathered block row by block row, in the order of the models' connections: parallel, no atomics,
-// the same bits for any thread count, nothing allocated.
+// the same bits for any thread count, nothing allocated. What only some elements add, those of a
+// core or the rest, is gathered from the same arrays afterwards.
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -18,6 +20,22 @@
 #include "taut/linalg/block_csr.h"
 
 namespace taut {
+
+// The elements of a core are those whose blocks off the diagonal are all in its mask; the others
+// are the rest, which the core leaves out whole.
+struct CoreElements {
+  Index inside = 0;         // how many are in the core
+  Index nodes_outside = 0;  // q: nodes of the largest element of the rest; 0: there is none
+  std::vector<std::uint8_t> is_outside;  // per block of the flat arrays: of the rest
+};
+
+// One of more than two nodes, and bounds on the norms of its diagonal blocks, one a node.
+struct LargerElement {
+  static constexpr Index most_nodes = 4;
+  Index nodes = 0;
+  std::array<Index, most_nodes> node{};
+  std::array<double, most_nodes> weight{};
+};
 
 class Assembler {
  public:
@@ -32,11 +50,12 @@ class Assembler {
   // Section 6: A_core keeps these).
   std::vector<std::uint8_t> core_mask(ForceClass core_class) const;
 
-  // For each block of the pattern off the diagonal, a bound on the norm of what the elements add to
-  // it with these factors of K and D, in whatever state; 0 on the diagonal.
+  // For each block of the pattern off the diagonal, a bound on the norm of what the elements of two
+  // nodes add to it with these factors of K and D, in whatever state; 0 on the diagonal.
   std::vector<double> block_bounds(double matrix_stiffness, double matrix_damping) const;
-  // How many elements have a block of the mask off the diagonal.
-  Index elements_in(std::span<const std::uint8_t> mask) const;
+  // The same of the larger elements, for their diagonal blocks.
+  std::vector<LargerElement> larger_elements(double matrix_stiffness, double matrix_damping) const;
+  CoreElements elements_of(std::span<const std::uint8_t> mask) const;
 
   struct Diagonal {
     std::span<const double> masses;  // kg
@@ -49,6 +68,12 @@ class Assembler {
   void assemble(std::span<const ForceRequest> requests, const Diagonal& diagonal, BlockCsr& a,
                 std::span<Vec3> b);
 
+  // Of the last assemble(), whose masses and damping must still be there: D_R, the diagonal blocks
+  // of the rest, one a node ...
+  void gather_rest_diagonal(const CoreElements& core, std::span<Mat3> diagonal) const;
+  // ... and the matrix without the rest (a's pattern).
+  void gather_core(const CoreElements& core, BlockCsr& matrix) const;
+
  private:
   struct Contribution {  // block or vector `id` of the flat arrays, with sign and transposition
     std::uint32_t bits;
@@ -56,9 +81,15 @@ class Assembler {
     bool negative() const { return bits & 1u; }
     bool transposed() const { return bits & 2u; }
   };
+  std::vector<double> own_bounds(double matrix_stiffness, double matrix_damping) const;
+  bool has_larger_elements(std::size_t model) const {
+    return implicit_[model] && models_[model]->nodes_per_element() > 2;
+  }
   void build_pattern(Index nodes);
   void build_gather(Index nodes);
-  void gather_row(Index i, const Diagonal& diagonal, BlockCsr& a) const;
+  void add(Contribution from, double (&sum)[9]) const;
+  template <class IsTaken>
+  void gather_row(Index i, IsTaken is_taken, BlockCsr& a) const;
 
   std::vector<const ForceModel*> models_;
   std::vector<bool> implicit_;
@@ -70,6 +101,7 @@ class Assembler {
   std::vector<Contribution> block_list_, vector_list_;
   std::vector<double> blocks_;
   std::vector<Vec3> vectors_;
+  Diagonal diagonal_;  // of the last assemble()
 };
 
 }  // namespace taut

@@ -1,15 +1,17 @@
 #pragma once
-// A force model: many small elements of the same kind (springs now), each coupling the nodes of its
-// stencil. Sign rule: f = -grad E (N), K = -df/dx as used, positive semidefinite (N/m), D = -df/dv
-// (N s/m). A model is asked for combinations, so that each element is visited once a step:
+// A force model: many small elements of the same kind (springs, hinges), each coupling the nodes of
+// its stencil.
 //
+//   f = -grad E,   K = -df/dx as used,   D = -df/dv        N, N/m, N s/m
 //   matrix block   damping * D + stiffness * K
-//   vector         force * f + K p + D q         p, q: node fields chosen by the integrator
+//   vector         force * f + (K p) + (D q)               p, q: node fields of the integrator
 //
-// It hands out its numbers in two flat arrays; where they go in the matrix, with which sign, it
-// says once, in `connect`. The assembler gathers them row by row, which is parallel and gives the
-// same bits for any thread count. Adding a model: its header and source, one line in
-// sim/cloth_model.cpp, one test file.
+// So each element is visited once a step. Of each element the matrix E is positive semidefinite and
+// its block rows sum to zero, since a translation costs nothing: on that the bounds of cores rest
+// (docs/mathematics.md, 5).
+//
+// Numbers come in two flat arrays; where they go in the matrix, with which sign, is said once, in
+// `connect`. A new model: its header and source, one line in sim/cloth_model.cpp, one test file.
 
 #include <span>
 #include <string>
@@ -50,15 +52,19 @@ class ForceModel {
   virtual ForceClass force_class() const = 0;
   // Whether the step it was made for may leave it out of the matrix (explicit_split.h).
   virtual bool stable_explicitly() const { return false; }
+  // q, the same for all elements.
+  virtual Index nodes_per_element() const = 0;
+  // Blocks are numbered element by element.
+  virtual Index blocks_per_element() const = 0;
   virtual Index block_count() const = 0;
   virtual Index vector_count() const = 0;
   virtual void connect(ConnectionSink& sink) const = 0;
   // blocks: 9 * block_count() doubles, left alone unless the request wants a matrix; vectors:
-  // block_count() entries. Parallel inside.
+  // vector_count() entries. Parallel inside.
   virtual void evaluate(const ForceRequest& request, std::span<double> blocks,
                         std::span<Vec3> vectors) const = 0;
-  // For each block b of matrix_stiffness K + matrix_damping D: a bound on its largest eigenvalue
-  // that holds in every state (block_count() entries). The core is chosen by it, so that the choice
+  // For each block b of matrix_stiffness K + matrix_damping D: a bound on its norm that
+  // holds in every state (block_count() entries). The core is chosen by it, so that the choice
   // stays while the cloth moves.
   virtual void bound_blocks(double matrix_stiffness, double matrix_damping,
                             std::span<double> bounds) const = 0;

@@ -20,6 +20,8 @@ class SpringModel : public ForceModel {
   ForceClass force_class() const override { return class_; }
   bool stable_explicitly() const override { return stable_explicitly_; }
   void mark_stable_explicitly() { stable_explicitly_ = true; }
+  Index nodes_per_element() const override { return 2; }
+  Index blocks_per_element() const override { return 1; }
   Index block_count() const override { return static_cast<Index>(springs_.size()); }
   Index vector_count() const override { return block_count(); }
   void connect(ConnectionSink& sink) const override;

@@ -37,8 +37,8 @@ std::string compressed(const std::string& bytes) {
   return result;
 }
 
-// Rows from the top: a byte that says "as they are", then red, green, blue. Neighbours' differences,
-// which PNG also knows, compress worse where rays leave a grain.
+// Rows from the top: a byte that says "as they are", then red, green, blue. Neighbours'
+// differences, which PNG also knows, compress worse where rays leave a grain.
 std::string png_rows(cairo_surface_t* surface) {
   const int width = cairo_image_surface_get_width(surface),
             height = cairo_image_surface_get_height(surface),

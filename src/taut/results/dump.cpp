@@ -8,6 +8,7 @@
 #include "taut/base/file.h"
 #include "taut/io/matrix_market.h"
 #include "taut/results/dump_meta.h"
+#include "taut/solve/preconditioner_choice.h"
 
 namespace taut {
 
@@ -169,7 +170,9 @@ void write_dump(const fs::path& folder, SceneSimulation& simulation, const Solve
   const ClothModel& cloth = simulation.cloth();
   const LinearSystem system = simulation.stepper().system();
   write_symmetric_matrix(folder / "A.mtx", *system.matrix, "the step's matrix, kg");
-  write_symmetric_matrix(folder / "A_core.mtx", core_of(*system.matrix, system.core),
+  BlockCsr own_core;
+  write_symmetric_matrix(folder / "A_core.mtx",
+                         core_of(core_matrix(system, own_core), system.core.mask),
                          "the matrix core, kg");
   for (const ForceClass force_class : {ForceClass::stretch, ForceClass::shear, ForceClass::bend})
     write_stiffness(folder, cloth, simulation.state(), force_class);

@@ -161,7 +161,8 @@ void StoredSystem::read_masses(const fs::path& path) {
   for (const double m : masses_)
     if (!(m > 0.0))
       throw InputError({path.string()}, fmt::format("holds {:.9g}: masses are positive", m));
-  rho_ = remainder_ratio(matrix_, core_, masses_);
+  // The file does not say which elements are outside the core.
+  if (may_be_springs(matrix_, core_)) rho_ = remainder_ratio(matrix_, core_, masses_);
   if (stiffness_ < 0.0) stiffness_ = 0.5 * block_diagonal_condition(matrix_) - 1.0;
 }
 
@@ -170,8 +171,7 @@ LinearSystem StoredSystem::system() const {
   system.matrix = &matrix_;
   system.rhs = rhs_;
   system.guess = system.last = guess_;
-  system.core = core_;
-  system.rho = rho_;
+  system.core = {"file", core_, rho_};
   system.stiffness = stiffness_;
   system.masses = masses_;
   system.positions = positions_;

@@ -11,16 +11,11 @@
 #include "taut/sim/describe.h"
 #include "taut/sim/solid_variants.h"
 #include "taut/sim/validator.h"
+#include "taut/solve/solver_registry.h"
 
 namespace taut {
 
 namespace {
-
-SolverOptions fallback_options(const SolverOptions& options) {
-  SolverOptions direct = options;
-  direct.name = "block_cholesky";
-  return direct;
-}
 
 World valid(World world) {
   world.validate();
@@ -56,6 +51,7 @@ Simulation::Simulation(World world, SimulationOptions options)
       surface_contact_(SurfaceContact::wanted(world_)
                            ? std::make_unique<SurfaceContact>(world_, cloth_)
                            : nullptr),
+      fallback_(options_.solver),
       state_(cloth_.start()),
       solid_targets_(world_.solids().size()),
       awaits_step_(world_.solids().size(), 0),
@@ -258,7 +254,7 @@ Status Simulation::solve_passes(bool may_halve, double& overshoot, StepReport& r
     contact_.constrain(constraints_);
     record.contact_ms += contact_timer.milliseconds();
     const double assembled = stepper_->assemble_ms();
-    summary = solve_or_fall_back(record);
+    summary = solve_or_fall_back();
     record.assemble_ms += stepper_->assemble_ms() - assembled;
     note_solve(summary, record);
     ++record.contact_passes;
@@ -275,17 +271,10 @@ Status Simulation::solve_passes(bool may_halve, double& overshoot, StepReport& r
   return {};
 }
 
-SolveSummary Simulation::solve_or_fall_back(StepReport& record) {
-  SolveSummary summary = stepper_->solve(constraints_, contact_.impulses());
-  if (summary.status.ok()) return summary;
-  const std::string reason = summary.status.message;
-  if (!fallback_) fallback_ = make_solver(fallback_options(options_.solver));
-  ++record.fallbacks;
-  summary = stepper_->solve(constraints_, contact_.impulses(), *fallback_);
-  if (!summary.status.ok())
-    summary.status.message = fmt::format("{}: {}; then {}: {}", options_.solver.name, reason,
-                                         summary.solver, summary.status.message);
-  return summary;
+SolveSummary Simulation::solve_or_fall_back() {
+  return fallback_.solve(stepper_->solver(), [&](ConstrainedSolver& solver) {
+    return stepper_->solve(constraints_, contact_.impulses(), solver);
+  });
 }
 
 void Simulation::note_solve(const SolveSummary& summary, StepReport& record) const {
@@ -299,7 +288,7 @@ void Simulation::note_solve(const SolveSummary& summary, StepReport& record) con
   record.order_ms += summary.order_ms;
   record.factor_ms += summary.factor_ms;
   record.solve_ms += summary.solve_ms + summary.reduce_ms;
-  if (summary.method.starts_with("core_"))
+  if (solver_traits(summary.method).bounds_iterations)
     record.core_springs = stepper_->core_springs(summary.core);
   // `auto` may change its method between passes: iterations of one without a bound are not to be
   // held against another's.

@@ -21,6 +21,7 @@
 #include "taut/sim/snapshot.h"
 #include "taut/sim/step_report.h"
 #include "taut/sim/surface_contact.h"
+#include "taut/solve/fallback.h"
 #include "taut/step/stepper.h"
 
 namespace taut {
@@ -106,7 +107,7 @@ class Simulation {
   void look_for_intersections(StepReport& record);
   double largest_overshoot() const;
   Status solve_passes(bool may_halve, double& overshoot, StepReport& record);
-  SolveSummary solve_or_fall_back(StepReport& record);
+  SolveSummary solve_or_fall_back();
   void note_solve(const SolveSummary& summary, StepReport& record) const;
   void note_state(StepReport& record) const;
 
@@ -127,7 +128,7 @@ class Simulation {
   SolidContact contact_;
   std::unique_ptr<SurfaceContact> surface_contact_;
   std::unique_ptr<Stepper> stepper_;
-  std::unique_ptr<ConstrainedSolver> fallback_;
+  FallbackChain fallback_;
   ConstraintSet pins_, held_, constraints_;  // held: pins and zones
   State state_;
   SolveSummary last_summary_;

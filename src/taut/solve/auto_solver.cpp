@@ -14,14 +14,11 @@ namespace taut {
 
 namespace {
 
-constexpr const char* names[] = {auto_core_method,
-                                 auto_core_method,
-                                 auto_core_method,
-                                 auto_core_method,
-                                 "upcg:projected_block_diagonal",
-                                 "upcg:ic0_core",
-                                 "upcg:ic0",
-                                 "block_cholesky"};
+// In the order of Kind.
+constexpr const char* names[] = {
+    auto_core_method, auto_core_method, auto_core_method, "upcg:projected_block_diagonal",
+    "upcg:ic0_core",  "upcg:ic0",       "block_cholesky"};
+constexpr std::size_t kinds = std::size(names);
 
 constexpr double shortest_patience = 32, longest_patience = 256;  // solves
 constexpr double bar_after_failure = 64;                          // solves
@@ -37,7 +34,8 @@ constexpr double loosest = 3.0;
 constexpr double worst_condition = 1e12;  // of what these methods can solve
 // of A's blocks in the core: the full core is the same
 constexpr double nearly_all = 0.98;
-constexpr double memory_version = 6;
+constexpr double memory_version = 7;
+constexpr double most_other_cores = 64;  // in a memory that is not damaged
 
 // Times are sums, the rest is the last attempt's.
 void add_attempt(SolveSummary&& attempt, SolveSummary& sum) {
@@ -55,6 +53,8 @@ void add_attempt(SolveSummary&& attempt, SolveSummary& sum) {
 
 }  // namespace
 
+const char* AutoSolver::name_of(Kind kind) { return names[static_cast<std::size_t>(kind)]; }
+
 // What the attempts at one system share.
 struct AutoSolver::Solve {
   const LinearSystem& original;
@@ -68,158 +68,181 @@ struct AutoSolver::Solve {
 AutoSolver::AutoSolver(SolverOptions options) : ConstrainedSolver(std::move(options)) {}
 AutoSolver::~AutoSolver() = default;
 
-ConstrainedSolver& AutoSolver::solver(Method method) {
-  if (!solvers_[method]) {
+std::vector<AutoSolver::Method> AutoSolver::methods(std::size_t other_cores) {
+  std::vector<Method> list;
+  for (std::size_t k = 0; k < kinds; ++k) {
+    const Kind kind = static_cast<Kind>(k);
+    const std::size_t count = kind == Kind::other_core ? other_cores : 1;
+    for (std::size_t other = 0; other < count; ++other) list.push_back({kind, other});
+  }
+  return list;
+}
+
+void AutoSolver::know_cores(std::size_t other_cores) {
+  const std::size_t known = methods_.size() - (kinds - 1);
+  if (other_cores <= known) return;
+  std::vector<Method> list = methods(other_cores);
+  for (Method& method : methods_)
+    *std::ranges::find_if(list, [&](const Method& m) {
+      return m.kind == method.kind && m.other == method.other;
+    }) = std::move(method);
+  methods_ = std::move(list);
+}
+
+const AutoSolver::Method& AutoSolver::method(Kind kind) const {
+  return *std::ranges::find(methods_, kind, &Method::kind);
+}
+
+ConstrainedSolver& AutoSolver::solver(Method& method) {
+  if (!method.solver) {
     SolverOptions options = options_;
-    options.name = names[method];
-    solvers_[method] = make_solver(options);
+    options.name = name_of(method.kind);
+    method.solver = make_solver(options);
   }
-  return *solvers_[method];
+  return *method.solver;
 }
 
-bool AutoSolver::available(Method method, const SystemSize& size) {
-  if (method == stretch_core) return size.stretch_core_nonzeros > 0.0;
-  if (method == unbent_core) return size.unbent_core_nonzeros > 0.0;
-  return method != full_core || size.core_nonzeros < nearly_all * size.nonzeros;
+bool AutoSolver::available(const Method& method, const SystemSize& size) {
+  if (method.kind == Kind::other_core) return core_nonzeros(method, size) > 0.0;
+  return method.kind != Kind::full_core || size.core_nonzeros < nearly_all * size.nonzeros;
 }
 
-MethodWork AutoSolver::work(Method method, const SystemSize& size) const {
-  const Record& r = records_[method];
-  const FactorSize known{r.factor_nonzeros, r.factor_flops, r.left_out_nonzeros};
-  switch (method) {
-    case core:
-      return core_work(size, known.known() ? known : estimate_factor(size, size.core_nonzeros),
-                       r.preparations);
-    case stretch_core:
-      return core_work(size,
-                       known.known() ? known : estimate_factor(size, size.stretch_core_nonzeros),
-                       r.preparations);
-    case unbent_core:
-      return core_work(size,
-                       known.known() ? known : estimate_factor(size, size.unbent_core_nonzeros),
-                       r.preparations);
-    case full_core:
-      return core_work(size, known.known() ? known : estimate_factor(size, size.nonzeros),
-                       r.preparations);
-    case block_diagonal:
+double AutoSolver::core_nonzeros(const Method& method, const SystemSize& size) {
+  if (method.kind != Kind::other_core)
+    return method.kind == Kind::own_core ? size.core_nonzeros : size.nonzeros;
+  return method.other < size.other_core_nonzeros.size() ? size.other_core_nonzeros[method.other]
+                                                        : 0.0;
+}
+
+MethodWork AutoSolver::work(const Method& method, const SystemSize& size) {
+  const Record& r = method.record;
+  FactorSize factor{r.factor_nonzeros, r.factor_flops, r.left_out_nonzeros};
+  if (!factor.known()) factor = estimate_factor(size, core_nonzeros(method, size));
+  switch (method.kind) {
+    case Kind::block_diagonal:
       return block_diagonal_work(size);
-    case ic0_core:
-      return incomplete_work(size, size.core_nonzeros, records_[method].preparations);
-    case ic0:
-      return incomplete_work(size, size.nonzeros, records_[method].preparations);
+    case Kind::ic0_core:
+      return incomplete_work(size, size.core_nonzeros, r.preparations);
+    case Kind::ic0:
+      return incomplete_work(size, size.nonzeros, r.preparations);
+    case Kind::direct:
+      return direct_work(factor);
     default:
-      return direct_work(known.known() ? known : estimate_factor(size, size.nonzeros));
+      return core_work(size, factor, r.preparations);
   }
 }
 
-double AutoSolver::expected_work(Method method, const SystemSize& size) const {
-  return work(method, size).total(std::max(0.0, records_[method].iterations));
+double AutoSolver::expected_work(const Method& method, const SystemSize& size) {
+  return work(method, size).total(std::max(0.0, method.record.iterations));
 }
 
-int AutoSolver::budget(Method method, const SystemSize& size, double limit) const {
+int AutoSolver::budget(const Method& method, const SystemSize& size, double limit) {
   const MethodWork w = work(method, size);
   const double iterations = w.per_iteration > 0.0 ? (limit - w.setup) / w.per_iteration : 0.0;
   return static_cast<int>(
       std::clamp(std::floor(iterations), static_cast<double>(least_trial), 1e6));
 }
 
-AutoSolver::Method AutoSolver::choose(const SystemSize& size) const {
+AutoSolver::Method& AutoSolver::choose(const SystemSize& size) {
   // Untried and not to be tried: it has failed.
-  Method best = !tried(core) && records_[core].next_trial > solves_ ? direct : core;
-  for (int m = 0; m < method_count; ++m)
-    if (const Method method = static_cast<Method>(m);
-        tried(method) && available(method, size) &&
-        expected_work(method, size) < expected_work(best, size))
-      best = method;
-  return best;
+  Method* best =
+      !own_core().tried() && own_core().record.next_trial > solves_ ? &direct() : &own_core();
+  for (Method& method : methods_)
+    if (method.tried() && available(method, size) &&
+        expected_work(method, size) < expected_work(*best, size))
+      best = &method;
+  return *best;
 }
 
 // Of a method that has not been tried.
-double AutoSolver::least_iterations(Method method, const Solve& solve) const {
-  if (has_core(method)) return 1.0;
+double AutoSolver::least_iterations(const Method& of, const Solve& solve) const {
+  if (has_core(of.kind)) return 1.0;
+  const double rho = solve.original.core.rho;
   double least = least_trial;
-  if (method == block_diagonal) {
+  if (of.kind == Kind::block_diagonal) {
     const double condition = block_diagonal_condition(*solve.original.matrix);
     least = block_diagonal_share * 0.5 * std::sqrt(condition) * std::log(2.0 / options_.tolerance);
-  } else if (method == ic0 && tried(ic0_core) && solve.original.rho >= 0.0) {
-    least = records_[ic0_core].iterations / std::sqrt(1.0 + solve.original.rho);
+  } else if (of.kind == Kind::ic0 && method(Kind::ic0_core).tried() && rho >= 0.0) {
+    least = method(Kind::ic0_core).record.iterations / std::sqrt(1.0 + rho);
   }
   return std::max<double>(least_trial, least);
 }
 
-AutoSolver::Method AutoSolver::rival_of(Method chosen, const Solve& solve) {
+AutoSolver::Method& AutoSolver::rival_of(Method& chosen, const Solve& solve) {
   const SystemSize& size = solve.size;
-  if (!tried(chosen)) return chosen;
+  if (!chosen.tried()) return chosen;
   const double to_beat = expected_work(chosen, size);
-  Method rival = chosen;
+  Method* rival = &chosen;
   double least = to_beat;
-  for (int m = 0; m < method_count; ++m) {
-    const Method method = static_cast<Method>(m);
-    if (method == chosen || !available(method, size) || records_[method].next_trial > solves_)
+  for (Method& method : methods_) {
+    if (&method == &chosen || !available(method, size) || method.record.next_trial > solves_)
       continue;
     const MethodWork w = work(method, size);
-    const double hoped = method == direct
+    const double hoped = method.kind == Kind::direct
                              ? w.setup
-                             : w.total(tried(method) ? 0.5 * records_[method].iterations
-                                                     : least_iterations(method, solve));
-    if (!tried(method) && hoped < to_beat) return method;
+                             : w.total(method.tried() ? 0.5 * method.record.iterations
+                                                      : least_iterations(method, solve));
+    if (!method.tried() && hoped < to_beat) return method;
     // Whether there is hope costs a look at the matrix, but for a core.
-    if (!tried(method) && !has_core(method))
-      records_[method].next_trial = solves_ + shortest_patience;
-    if (hoped < least) rival = method, least = hoped;
+    if (!method.tried() && !has_core(method.kind))
+      method.record.next_trial = solves_ + shortest_patience;
+    if (hoped < least) rival = &method, least = hoped;
   }
-  return rival;
+  return *rival;
 }
 
 void AutoSolver::run(const LinearSystem& system, std::span<double> x, SolveSummary& summary) {
   ++solves_;
+  know_cores(system.other_cores.size());
   Solve solve{system, system, x, summary, size_of(system), true};
-  const Method chosen = choose(solve.size), rival = rival_of(chosen, solve);
-  if (rival != chosen) {
+  Method& chosen = choose(solve.size);
+  Method& rival = rival_of(chosen, solve);
+  if (&rival != &chosen) {
     const bool won = attempt(rival, budget(rival, solve.size, expected_work(chosen, solve.size)),
                              solve) == Attempt::solved;
     note_trial(rival, won);
     if (won) return;
   }
-  if (chosen != core && chosen != direct) {
-    if (attempt(chosen, budget(chosen, solve.size, give_up_at * expected_work(core, solve.size)),
-                solve) == Attempt::solved)
-      return;
+  if (chosen.kind != Kind::own_core && chosen.kind != Kind::direct) {
+    const double limit = give_up_at * expected_work(own_core(), solve.size);
+    if (attempt(chosen, budget(chosen, solve.size, limit), solve) == Attempt::solved) return;
     note_trial(chosen, false);
-  } else if (chosen == direct) {
-    if (attempt(direct, 0, solve) == Attempt::solved) return;
+  } else if (chosen.kind == Kind::direct) {
+    if (attempt(direct(), 0, solve) == Attempt::solved) return;
   }
   // A core that leaves out too much, or everything, has no useful bound.
-  if (attempt(core, budget(core, solve.size, give_up_at * expected_work(direct, solve.size)),
-              solve) != Attempt::solved)
-    attempt(direct, 0, solve);
+  const double limit = give_up_at * expected_work(direct(), solve.size);
+  if (attempt(own_core(), budget(own_core(), solve.size, limit), solve) != Attempt::solved)
+    attempt(direct(), 0, solve);
 }
 
 double AutoSolver::allowed_condition(const LinearSystem& system) {
-  return system.rho >= 0.0 ? 2.0 * (1.0 + system.rho) : core_condition;
+  return system.core.rho >= 0.0 ? system.core.condition() : core_condition;
 }
 
-double AutoSolver::first_condition(Method method, const LinearSystem& system) {
-  return has_core(method) ? allowed_condition(system) : block_diagonal_condition(*system.matrix);
+double AutoSolver::first_condition(Kind kind, const LinearSystem& system) {
+  return has_core(kind) ? allowed_condition(system) : block_diagonal_condition(*system.matrix);
 }
 
-double AutoSolver::tolerance_for(Method method, const LinearSystem& system) const {
+double AutoSolver::tolerance_for(const Method& method, const LinearSystem& system) const {
   const double factor =
-      method == core
+      method.kind == Kind::own_core
           ? 1.0
-          : std::min(1.0, std::sqrt(allowed_condition(system) / records_[method].condition));
+          : std::min(1.0, std::sqrt(allowed_condition(system) / method.record.condition));
   return std::max(1e-14, options_.tolerance * factor);
 }
 
-std::span<const std::uint8_t> AutoSolver::all_blocks(const BlockCsr& a) {
+Core AutoSolver::full_core(const BlockCsr& a) {
   all_blocks_.assign(static_cast<std::size_t>(a.pattern->blocks()), 1);
-  return all_blocks_;
+  return {"all", all_blocks_, 0.0};
 }
 
-AutoSolver::Attempt AutoSolver::attempt(Method method, int most_iterations, Solve& solve) {
+AutoSolver::Attempt AutoSolver::attempt(Method& method, int most_iterations, Solve& solve) {
+  Record& r = method.record;
+  const char* name = name_of(method.kind);
   // Few iterations would not show how bad it is.
-  if (is_incomplete(method) && records_[method].condition == 0.0)
-    records_[method].condition = std::min(worst_condition, first_condition(method, solve.original));
+  if (is_incomplete(method.kind) && r.condition == 0.0)
+    r.condition = std::min(worst_condition, first_condition(method.kind, solve.original));
   ConstrainedSolver& with = solver(method);
   const double tolerance = tolerance_for(method, solve.original);
   if (options_.max_iterations > 0)
@@ -230,31 +253,25 @@ AutoSolver::Attempt AutoSolver::attempt(Method method, int most_iterations, Solv
   with.observer = observer;
   SolveSummary s;
   LinearSystem system = solve.system;
-  const auto take = [&](const OtherCore& other, CoreUsed used) {
-    system.core = other.mask, system.rho = other.rho, s.core = used;
-  };
-  if (method == stretch_core) take(system.stretch_core, CoreUsed::stretch);
-  if (method == unbent_core) take(system.unbent_core, CoreUsed::unbent);
-  if (method == full_core)
-    system.core = all_blocks(*system.matrix), system.rho = 0.0, s.core = CoreUsed::all;
+  if (method.kind == Kind::other_core) system.core = system.other_cores[method.other];
+  if (method.kind == Kind::full_core) system.core = full_core(*system.matrix);
   run_other(with, system, solve.x, s);
   if (s.status.ok() && !all_finite(solve.x))
     s.status = {Outcome::not_finite, "the solution holds NaN or infinity"};
   learn(method, s, record, tolerance, solve);
 
-  const double error =
-      s.error_bound >= 0.0 ? s.error_bound : tolerance * std::sqrt(records_[method].condition);
+  const double error = s.error_bound >= 0.0 ? s.error_bound : tolerance * std::sqrt(r.condition);
   const bool loose =
-      is_incomplete(method) &&
+      is_incomplete(method.kind) &&
       error > loosest * options_.tolerance * std::sqrt(allowed_condition(solve.original));
   const Outcome outcome = s.status.outcome;
   const bool solved = s.status.ok() && !loose;
-  s.method = names[method];
+  s.method = name;
   if (!solved) {
     const char* end = loose && s.status.ok()               ? "not accurate enough"
                       : outcome == Outcome::max_iterations ? "given up"
                                                            : "failed";
-    s.remark = fmt::format("{} {} after {} iterations", names[method], end, s.iterations);
+    s.remark = fmt::format("{} {} after {} iterations", name, end, s.iterations);
     // The iterate so far is where the next method begins.
     guess_.assign(solve.x.begin(), solve.x.end());
     if (all_finite(guess_)) solve.system.guess = guess_, solve.system.guess_is_iterate = true;
@@ -262,7 +279,7 @@ AutoSolver::Attempt AutoSolver::attempt(Method method, int most_iterations, Solv
   }
   add_attempt(std::move(s), solve.summary);
   if (solved) {
-    last_solved_ = method;
+    last_solved_ = method.kind;
     return Attempt::solved;
   }
   if (outcome == Outcome::converged || outcome == Outcome::max_iterations) return Attempt::given_up;
@@ -270,12 +287,12 @@ AutoSolver::Attempt AutoSolver::attempt(Method method, int most_iterations, Solv
   return Attempt::failed;
 }
 
-void AutoSolver::learn(Method method, const SolveSummary& s, const CgCoefficients& record,
+void AutoSolver::learn(Method& method, const SolveSummary& s, const CgCoefficients& record,
                        double tolerance, Solve& solve) {
-  Record& r = records_[method];
+  Record& r = method.record;
   // In double precision from the start it costs twice as much: half a preparation more (core_work).
   const bool at_once_in_double =
-      has_core(method) && s.fallbacks == 0 && std::string_view(s.precision) == "double";
+      has_core(method.kind) && s.fallbacks == 0 && std::string_view(s.precision) == "double";
   r.preparations = s.preparations + s.fallbacks + (at_once_in_double ? 0.5 : 0.0);
   if (s.factor_nonzeros > 0.0) {
     r.factor_nonzeros = s.factor_nonzeros, r.factor_flops = s.factor_flops;
@@ -286,9 +303,9 @@ void AutoSolver::learn(Method method, const SolveSummary& s, const CgCoefficient
     r.next_trial = solves_ + bar_after_failure;
     return;
   }
-  if (is_incomplete(method)) {
+  if (is_incomplete(method.kind)) {
     double seen = r.condition;
-    if (has_core(method)) {
+    if (has_core(method.kind)) {
       if (s.error_bound > 0.0 && s.stop_value > 0.0)
         seen = std::pow(s.error_bound / s.stop_value, 2);
     } else if (record.alpha.size() > 1) {
@@ -312,21 +329,21 @@ void AutoSolver::learn(Method method, const SolveSummary& s, const CgCoefficient
   }
 }
 
-void AutoSolver::note_trial(Method method, bool won) {
-  Record& r = records_[method];
+void AutoSolver::note_trial(Method& method, bool won) {
+  Record& r = method.record;
   r.patience = won ? shortest_patience : std::min(longest_patience, 2.0 * r.patience);
   r.next_trial = std::max(r.next_trial, solves_ + r.patience);
 }
 
 std::vector<double> AutoSolver::memory() const {
-  std::vector<double> list{memory_version, solves_};
-  for (int m = 0; m < method_count; ++m) {
-    const Record& r = records_[static_cast<std::size_t>(m)];
+  std::vector<double> list{memory_version, solves_,
+                           static_cast<double>(methods_.size() - (kinds - 1))};
+  for (const Method& method : methods_) {
+    const Record& r = method.record;
     list.insert(list.end(), {r.iterations, r.condition, r.next_trial, r.patience, r.factor_nonzeros,
                              r.factor_flops, r.left_out_nonzeros, r.preparations});
-    const std::vector<double> inner = solvers_[static_cast<std::size_t>(m)]
-                                          ? solvers_[static_cast<std::size_t>(m)]->memory()
-                                          : std::vector<double>{};
+    const std::vector<double> inner =
+        method.solver ? method.solver->memory() : std::vector<double>{};
     list.push_back(static_cast<double>(inner.size()));
     list.insert(list.end(), inner.begin(), inner.end());
   }
@@ -335,7 +352,7 @@ std::vector<double> AutoSolver::memory() const {
 
 void AutoSolver::restore_memory(std::span<const double> memory) {
   if (memory.empty()) {
-    records_ = {};
+    for (Method& method : methods_) method.record = {};
     solves_ = 0.0;
     return;
   }
@@ -345,21 +362,26 @@ void AutoSolver::restore_memory(std::span<const double> memory) {
       throw InputError("the stored memory of the solver 'auto' is too short");
     return memory[at++];
   };
+  // Of a list, at most `most` long.
+  const auto next_count = [&](double most) {
+    const double count = next();
+    if (!(count >= 0.0 && count <= most))
+      throw InputError("the stored memory of the solver 'auto' is damaged");
+    return static_cast<std::size_t>(count);
+  };
   if (next() != memory_version)
     throw InputError("the stored memory of a solver does not belong to 'auto'");
   solves_ = next();
-  for (int m = 0; m < method_count; ++m) {
-    Record& r = records_[static_cast<std::size_t>(m)];
+  methods_ = methods(next_count(most_other_cores));
+  for (Method& method : methods_) {
+    Record& r = method.record;
     for (double* value :
          {&r.iterations, &r.condition, &r.next_trial, &r.patience, &r.factor_nonzeros,
           &r.factor_flops, &r.left_out_nonzeros, &r.preparations})
       *value = next();
-    const double count = next();
-    if (!(count >= 0.0 && count <= static_cast<double>(memory.size() - at)))
-      throw InputError("the stored memory of the solver 'auto' is damaged");
-    std::vector<double> inner(static_cast<std::size_t>(count));
+    std::vector<double> inner(next_count(static_cast<double>(memory.size())));
     for (double& value : inner) value = next();
-    if (!inner.empty()) solver(static_cast<Method>(m)).restore_memory(inner);
+    if (!inner.empty()) solver(method).restore_memory(inner);
   }
 }
 

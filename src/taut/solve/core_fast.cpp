@@ -47,8 +47,8 @@ Rounding rounding_in_single(const LinearSystem& system) {
 }
 
 // y = P x: the blocks of the mask.
-void multiply_core(const BlockCsr& a, std::span<const std::uint8_t> mask, std::span<const double> x,
-                   std::span<double> y) {
+void multiply_masked(const BlockCsr& a, std::span<const std::uint8_t> mask,
+                     std::span<const double> x, std::span<double> y) {
   const BlockPattern& p = *a.pattern;
   parallel_for(p.rows(), 256, [&](Index begin, Index end) {
     for (Index i = begin; i < end; ++i) {
@@ -69,19 +69,22 @@ void multiply_core(const BlockCsr& a, std::span<const std::uint8_t> mask, std::s
 }  // namespace
 
 bool CoreFast::analyze_if_new(const LinearSystem& system, SolveSummary& summary) {
-  const bool is_known = pattern_ == system.matrix->pattern &&
-                        (system.core.empty() ? std::ranges::equal(mask_, core_mask(system))
-                                             : std::ranges::equal(mask_, system.core));
+  const bool has_matrix = system.core.matrix != nullptr;
+  const bool is_known = pattern_ == system.matrix->pattern && has_matrix == has_matrix_ &&
+                        (system.core.mask.empty() ? std::ranges::equal(mask_, core_mask(system))
+                                                  : std::ranges::equal(mask_, system.core.mask));
   if (is_known) return true;
   mask_ = core_mask(system);
   pattern_ = system.matrix->pattern;
+  has_matrix_ = has_matrix;
   factor_.set_precision(CholeskyPrecision::single_precision);
-  summary.status = factor_.analyze(pattern_, mask_, BlocksLeftOut::without_place);
+  summary.status = factor_.analyze(
+      pattern_, mask_, has_matrix ? BlocksLeftOut::all_outside_mask : BlocksLeftOut::without_place);
   if (!summary.status.ok()) {
     pattern_ = nullptr;
     return false;
   }
-  if (pattern_->uniform_dim == 3) {
+  if (pattern_->uniform_dim == 3 && !has_matrix_) {
     remainder_.analyze(pattern_, factor_.analyzed_blocks(), factor_.parallelograms());
     ratios_.resize(static_cast<std::size_t>(remainder_.batches()));
   }
@@ -92,21 +95,21 @@ bool CoreFast::factorize(CholeskyPrecision precision, const LinearSystem& system
                          SolveSummary& summary) {
   factor_.set_precision(precision);
   summary.precision = precision == CholeskyPrecision::single_precision ? "single" : "double";
-  const BlockCsr& a = *system.matrix;
+  const BlockCsr& p = core_of(system);
   const NodeBasis basis = free_basis(system);
   knows_products_ = lumped_ && precision == CholeskyPrecision::single_precision;
   BlocksOutside outside{lumped_, replaced_};
   if (knows_products_ || replaced_)
-    outside.visit = [&](Index begin, Index end) { remainder_.update_rows(a, begin, end); };
+    outside.visit = [&](Index begin, Index end) { remainder_.update_rows(p, begin, end); };
   if (replaced_)
     outside.beside = {remainder_.batches(), [&](Index batch) {
                         ratios_[batch] = remainder_.ratios_in(batch, system.masses);
                       }};
   if (starts_at_rest_) {
-    summary.status = factor_.factorize(a, basis, r_, &delta0_, outside);
+    summary.status = factor_.factorize(p, basis, r_, &delta0_, outside);
     delta_ = delta0_;
   } else {
-    summary.status = factor_.factorize(a, basis, load_, delta0_, r_, delta_, outside);
+    summary.status = factor_.factorize(p, basis, load_, delta0_, r_, delta_, outside);
   }
   if (summary.status.ok() && !std::isfinite(delta0_))
     summary.status = {Outcome::not_finite, "the right-hand side overflows the factor's precision"};
@@ -124,6 +127,7 @@ bool CoreFast::begin_in_double(const LinearSystem& system, bool single_has_faile
   // Not what springs alone would leave.
   lumped_ = false;
   take_outside(system);
+  condition_ = -1.0;
   summary.remark += fmt::format("{}the blocks outside the core not lumped: {}",
                                 summary.remark.empty() ? "" : "; ", summary.status.message);
   ++summary.fallbacks;
@@ -135,7 +139,7 @@ void CoreFast::take_outside(const LinearSystem& system) {
   replaced_ = lumped_ && !system.masses.empty() && !system.last.empty() &&
               replacing_pays(*system.matrix, factor_.parallelograms(), system.last);
   remainder_.set_replaced(replaced_);
-  condition_ = system.rho >= 0.0 ? 2.0 * (1.0 + system.rho) : -1.0;
+  condition_ = system.core.condition();
   excess_ = 1.0;
 }
 
@@ -149,14 +153,18 @@ void CoreFast::bound_replaced() {
 
 // For the search direction c, whose product with A is in q, and w = P c: wᵀ P̃⁻¹ w / cᵀ w, which is
 // 1 but for the factor's rounding. Takes q_ for w.
-double CoreFast::factor_quality(const BlockCsr& a) {
+double CoreFast::factor_quality(const LinearSystem& system) {
   if (lumped_) {
     remainder_.subtract(c_, q_);
   } else {
-    multiply_core(a, factor_.analyzed_blocks(), c_, q_);
+    multiply_masked(core_of(system), factor_.analyzed_blocks(), c_, q_);
   }
   const double energy = dot(c_, q_);
   return factor_.solve_forward(q_) / energy;
+}
+
+const BlockCsr& CoreFast::core_of(const LinearSystem& system) const {
+  return has_matrix_ ? *system.core.matrix : *system.matrix;
 }
 
 void CoreFast::residual(const LinearSystem& system, std::span<const double> x) {
@@ -235,7 +243,8 @@ KrylovResult CoreFast::iterate(const LinearSystem& system, std::span<double> x, 
     energy_ += alpha * delta;
     is_true = from_a;
     if (from_a && in_single && result.iterations % check_every == check_every - 1) {
-      if (const double quality = factor_quality(a); !(std::abs(quality - 1.0) < worst_quality)) {
+      if (const double quality = factor_quality(system);
+          !(std::abs(quality - 1.0) < worst_quality)) {
         ++result.iterations;
         result.status = {Outcome::breakdown,
                          fmt::format("after {} iterations the factor in single precision is wrong "
@@ -277,10 +286,11 @@ void CoreFast::run(const LinearSystem& system, std::span<double> x, SolveSummary
   Timer timer;
   if (!analyze_if_new(system, summary)) return initial_guess(system, x);
   summary.order_ms = timer.lap();
+  summary.core = system.core.name;
   for (auto* v : {&load_, &r_, &c_, &p_, &q_}) v->resize(x.size());
   start(system, x);
   summary.reduce_ms = timer.lap();
-  lumped_ = system.rho >= 0.0 && system.matrix->pattern->uniform_dim == 3;
+  lumped_ = !has_matrix_ && system.core.rho >= 0.0 && system.matrix->pattern->uniform_dim == 3;
   take_outside(system);
   summary.solve_ms = timer.lap();
   const bool tries_single = !(rounding_in_single(system).worst > too_large_for_single);
@@ -320,13 +330,22 @@ void CoreFast::run(const LinearSystem& system, std::span<double> x, SolveSummary
   }
   take_over(result, summary);
   summary.replaced = replaced_;
-  if (condition_ > 0.0) summary.bound_iterations = bound_iterations_;
-  if (lumped_ && from_rest && energy_ > 0.0)
+  summary.condition = condition_;
+  if (condition_ > 0.0) {
+    summary.bound_iterations = bound_iterations_;
+  } else if (std::ranges::count(factor_.analyzed_blocks(), 0) > 0) {
+    summary.remark +=
+        fmt::format("{}no bound: what the core leaves out is not known to be elements of two nodes",
+                    summary.remark.empty() ? "" : "; ");
+  }
+  const bool is_below_a = lumped_ || has_matrix_;
+  if (is_below_a && from_rest && energy_ > 0.0)
     summary.error_bound = result.stop_value * std::sqrt(excess_ * delta0_ / energy_);
   summary.factor_nonzeros = factor_.statistics().nonzeros;
   summary.factor_flops = factor_.statistics().flops;
   if (pattern_->uniform_dim == 3)
-    summary.left_out_nonzeros = static_cast<double>(remainder_.nonzeros());
+    summary.left_out_nonzeros =
+        static_cast<double>(has_matrix_ ? pattern_->value_count() : remainder_.nonzeros());
   summary.memory_bytes = factor_.statistics().bytes + static_cast<double>(remainder_.bytes()) +
                          5.0 * sizeof(double) * static_cast<double>(x.size());
 }

@@ -61,7 +61,9 @@ void CorePcg::run(const LinearSystem& system, std::span<double> x, SolveSummary&
   Timer timer;
   summary.remark = remark_;
   reduced_.update(system);
-  const bool new_pattern = core_.update(*system.matrix, system.constraints, core_mask(system));
+  const bool new_pattern =
+      core_.update(core_matrix(system, own_core_), system.constraints, core_mask(system));
+  summary.core = system.core.name;
   summary.reduce_ms = timer.lap();
 
   if (new_pattern || !analyzed_ || !options_.reuse_analysis) {
@@ -81,9 +83,10 @@ void CorePcg::run(const LinearSystem& system, std::span<double> x, SolveSummary&
                 observer, x, summary, coefficients);
   }
   summary.solve_ms = timer.lap();
-  if (system.rho >= 0.0)
+  summary.condition = system.core.condition();
+  if (summary.condition > 0.0)
     summary.bound_iterations =
-        core_iteration_bound(system.rho, summary.start_value, options_.tolerance);
+        iteration_bound(summary.condition, summary.start_value, options_.tolerance);
   summary.factor_nonzeros = cholesky_->statistics().nonzeros;
   summary.factor_flops = cholesky_->statistics().flops;
   summary.memory_bytes = static_cast<double>(reduced_.matrix().bytes() + core_.matrix().bytes()) +

@@ -44,7 +44,8 @@ CoreSpectrum measure_core_spectrum(const LinearSystem& system, double tolerance)
   ReducedSystem reduced;
   Reduction core;
   reduced.update(system);
-  core.update(*system.matrix, system.constraints, core_mask(system));
+  BlockCsr own_core;
+  core.update(core_matrix(system, own_core), system.constraints, core_mask(system));
   const std::unique_ptr<SparseCholesky> factor = make_cholesky("block");
   if (!factor->analyze(core.matrix()).ok() || !factor->factorize(core.matrix()).ok()) return result;
   const FactorPreconditioner m(*factor, false);
@@ -56,10 +57,10 @@ CoreSpectrum measure_core_spectrum(const LinearSystem& system, double tolerance)
   const KrylovResult solve = pcg(BlockCsrOperator(reduced.matrix()), m, reduced.rhs(),
                                  reduced.solution(), {tolerance, limit, {}});
   result.iterations = solve.iterations;
-  if (system.rho < 0.0) return result;
-  result.rho = system.rho;
-  result.bound = 2.0 * (1.0 + system.rho);
-  result.bound_iterations = core_iteration_bound(system.rho, solve.start_value, tolerance);
+  if (system.core.rho < 0.0) return result;
+  result.rho = system.core.rho;
+  result.bound = system.core.condition();
+  result.bound_iterations = iteration_bound(result.bound, solve.start_value, tolerance);
   return result;
 }
 

@@ -1,13 +1,12 @@
 #pragma once
 // The bound of corePCG (docs/mathematics.md, 5) beside what is measured on one system:
 //
-//   1/(1+ρ) <= λ(P⁻¹A) <= 2        cond(P⁻¹A) <= 2 (1+ρ)        iterations <=
-//                                                               core_iteration_bound(ρ, start,
-//                                                               tolerance)
+//   1/(1+ρ) <= λ(P⁻¹A) <= q        cond(P⁻¹A) <= κ = Core::condition()
+//   iterations <= iteration_bound(κ, start, tolerance)
 //
 //   smallest, largest   the extreme eigenvalues of P̃⁻¹Ã, by Lanczos (linalg/lanczos.h); they
 //                       approach the true ones from within
-//   bound               2 (1+ρ), of largest/smallest
+//   bound               κ, of largest/smallest
 //   rho                 the system's ρ; negative, like `bound` and `bound_iterations`, when the
 //                       system does not know it
 //   iterations          that corePCG takes from the system's guess to `tolerance`

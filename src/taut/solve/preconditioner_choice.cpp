@@ -2,6 +2,7 @@
 
 #include <cassert>
 
+#include "taut/base/parallel.h"
 #include "taut/linalg/incomplete_cholesky.h"
 #include "taut/linalg/smoothed_aggregation.h"
 #include "taut/linalg/ssor.h"
@@ -55,10 +56,24 @@ std::vector<NamedPreconditioner> builtin_preconditioners() {
 }
 
 std::vector<std::uint8_t> core_mask(const LinearSystem& system) {
-  std::vector<std::uint8_t> mask(system.core.begin(), system.core.end());
+  std::vector<std::uint8_t> mask(system.core.mask.begin(), system.core.mask.end());
   if (mask.empty()) mask.assign(static_cast<std::size_t>(system.matrix->pattern->blocks()), 0);
   assert(static_cast<Index>(mask.size()) == system.matrix->pattern->blocks());
   return mask;
+}
+
+const BlockCsr& core_matrix(const LinearSystem& system, BlockCsr& own) {
+  if (!system.core.matrix) return *system.matrix;
+  own = *system.core.matrix;
+  const BlockPattern& p = *own.pattern;
+  assert(p.uniform_dim == 3 && static_cast<Index>(system.core.rest_diagonal.size()) == p.rows());
+  parallel_for(p.rows(), 512, [&](Index begin, Index end) {
+    for (Index i = begin; i < end; ++i)
+      for (Index r = 0; r < 3; ++r)
+        for (Index c = 0; c < 3; ++c)
+          own.block(i, p.diagonal[i])[r * p.width(i) + c] += system.core.rest_diagonal[i](r, c);
+  });
+  return own;
 }
 
 NearNullSpace near_null_space(const LinearSystem& system, bool reduced) {
@@ -88,7 +103,7 @@ const BlockCsr& PreconditionerMatrix::reduced(const LinearSystem& system,
   if (source == PreconditionerSource::unconstrained) return *system.matrix;
   // node-wise ones read the diagonal blocks only
   if (source != PreconditionerSource::core) return reduced_matrix;
-  part_.update(*system.matrix, system.constraints, core_mask(system));
+  part_.update(core_matrix(system, core_), system.constraints, core_mask(system));
   bytes_ = part_.matrix().bytes();
   return part_.matrix();
 }
@@ -99,10 +114,9 @@ const BlockCsr& PreconditionerMatrix::full(const LinearSystem& system,
   const BlockCsr* matrix = system.matrix;
   if (source == PreconditionerSource::unconstrained) return *matrix;
   if (source != PreconditionerSource::constrained) {
-    LinearSystem no_core = system;
-    no_core.core = {};
-    part_.update(*matrix, nullptr,
-                 core_mask(source == PreconditionerSource::core ? system : no_core));
+    LinearSystem part = system;
+    if (source != PreconditionerSource::core) part.core = {};
+    part_.update(core_matrix(part, core_), nullptr, core_mask(part));
     matrix = &part_.matrix();
     bytes_ += matrix->bytes();
   }

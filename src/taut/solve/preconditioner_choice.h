@@ -67,11 +67,14 @@ class PreconditionerMatrix {
 
  private:
   Reduction part_;
-  BlockCsr filtered_;
+  BlockCsr core_, filtered_;
   Offset bytes_ = 0;
 };
 
 // The system's core, one byte per block of A; only the diagonal blocks if it has none.
 std::vector<std::uint8_t> core_mask(const LinearSystem& system);
+// A matrix whose blocks of that mask are the core with the rest's diagonal, M + L_C + D_R
+// (core/core.h): A itself, or `own`, which is then formed.
+const BlockCsr& core_matrix(const LinearSystem& system, BlockCsr& own);
 
 }  // namespace taut

@@ -23,11 +23,11 @@ SystemSize size_of(const LinearSystem& system) {
   const auto blocks_of = [](std::span<const std::uint8_t> core) {
     return static_cast<double>(std::ranges::count(core, std::uint8_t{1}));
   };
-  const double core_blocks = system.core.empty() ? p.rows() : blocks_of(system.core);
+  const double core_blocks = system.core.mask.empty() ? p.rows() : blocks_of(system.core.mask);
   size.nonzeros = free * static_cast<double>(p.value_count());
   size.core_nonzeros = free * core_blocks * per_block;
-  size.stretch_core_nonzeros = free * blocks_of(system.stretch_core.mask) * per_block;
-  size.unbent_core_nonzeros = free * blocks_of(system.unbent_core.mask) * per_block;
+  for (const Core& core : system.other_cores)
+    size.other_core_nonzeros.push_back(free * blocks_of(core.mask) * per_block);
   return size;
 }
 

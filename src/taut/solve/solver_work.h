@@ -37,8 +37,7 @@ struct MethodWork {
 struct SystemSize {
   double unknowns = 0.0, nodes = 0.0;          // free ones; nodes: a third of them
   double nonzeros = 0.0, core_nonzeros = 0.0;  // of Ã and of its core, both triangles
-  // of the other cores, 0 where there is none
-  double stretch_core_nonzeros = 0.0, unbent_core_nonzeros = 0.0;
+  std::vector<double> other_core_nonzeros;     // 0 where it is not there
 };
 SystemSize size_of(const LinearSystem& system);
 

@@ -24,6 +24,11 @@ std::vector<bool> implicit_models(const std::vector<const ForceModel*>& models,
   return implicit;
 }
 
+// What may be cores beside a chosen one: the paper's, and all but what only bending couples. Each
+// holds the one before it.
+constexpr ForceClass unbent[] = {ForceClass::stretch, ForceClass::shear};
+constexpr std::span<const ForceClass> smaller_cores[] = {std::span(unbent).first(1), unbent};
+
 // A's row of node i times u.
 Vec3 row_product(const BlockCsr& a, Index i, std::span<const Vec3> u) {
   using Block =
@@ -48,7 +53,8 @@ Stepper::Stepper(Index nodes, std::vector<const ForceModel*> models, ExternalFor
       chooses_core_(solver.chooses_core()),
       wants_rho_(solver_->traits().needs_rho),
       a_(assembler_.pattern()) {
-  take_core(stretch_core(), core_);
+  cores_.push_back(core_of(smaller_cores[0]));
+  rests_.resize(1);
   if (integrator_->is_nonlinear()) relinearised_a_ = a_;
   current_a_ = &a_;
   const std::size_t n = static_cast<std::size_t>(nodes);
@@ -63,43 +69,62 @@ std::vector<double> Stepper::block_bounds(double h) const {
                                  integrator_->damping_coefficient(first, h));
 }
 
-std::vector<std::uint8_t> Stepper::chosen_core(double h) const {
-  return taut::choose_core(*assembler_.pattern(), block_bounds(h), external_.masses());
+std::vector<LargerElement> Stepper::larger_elements(double h) const {
+  const State first;
+  return assembler_.larger_elements(integrator_->stiffness_coefficient(first, h),
+                                    integrator_->damping_coefficient(first, h));
 }
 
-std::vector<std::uint8_t> Stepper::unbent_core() const {
-  std::vector<std::uint8_t> mask = stretch_core();
-  const std::vector<std::uint8_t> shear = assembler_.core_mask(ForceClass::shear);
-  for (std::size_t k = 0; k < mask.size(); ++k) mask[k] |= shear[k];
+std::vector<std::uint8_t> Stepper::chosen_core(double h) const {
+  return taut::choose_core(*assembler_.pattern(), block_bounds(h), external_.masses(),
+                           core_target_rho, larger_elements(h));
+}
+
+std::vector<std::uint8_t> Stepper::family_core(std::span<const ForceClass> families) const {
+  std::vector<std::uint8_t> mask(static_cast<std::size_t>(assembler_.pattern()->blocks()), 0);
+  for (const ForceClass family : families) {
+    const std::vector<std::uint8_t> own = assembler_.core_mask(family);
+    for (std::size_t k = 0; k < mask.size(); ++k) mask[k] |= own[k];
+  }
   return mask;
 }
 
-void Stepper::take_core(std::vector<std::uint8_t> mask, Core& core) {
-  core.springs = assembler_.elements_in(mask);
-  core.mask = std::move(mask);
+ElementCore Stepper::core_of(std::span<const ForceClass> families) const {
+  std::string name;
+  for (const ForceClass family : families)
+    name += std::string(name.empty() ? "" : "+") + name_of(family);
+  return {name, family_core(families), assembler_};
 }
 
-Index Stepper::core_springs(CoreUsed core) const {
-  if (core == CoreUsed::all)
-    return assembler_.elements_in(
-        std::vector<std::uint8_t>(static_cast<std::size_t>(assembler_.pattern()->blocks()), 1));
-  if (core == CoreUsed::stretch && !stretch_core_.mask.empty()) return stretch_core_.springs;
-  if (core == CoreUsed::unbent && !unbent_core_.mask.empty()) return unbent_core_.springs;
-  return core_.springs;
+Index Stepper::core_springs(std::string_view name) const {
+  if (name == "all")
+    return assembler_
+        .elements_of(
+            std::vector<std::uint8_t>(static_cast<std::size_t>(assembler_.pattern()->blocks()), 1))
+        .inside;
+  const auto of_name = std::ranges::find_if(
+      cores_, [&](const ElementCore& core) { return core.is_there() && core.name() == name; });
+  return (of_name == cores_.end() ? cores_[0] : *of_name).elements().inside;
 }
 
 void Stepper::choose_core(double h) {
   core_h_ = h;
   if (wants_rho_)
-    stiffness_ = stiffness_ratio(*assembler_.pattern(), block_bounds(h), external_.masses());
+    stiffness_ = stiffness_ratio(*assembler_.pattern(), block_bounds(h), external_.masses(),
+                                 larger_elements(h));
   if (!chooses_core_) return;
-  take_core(chosen_core(h), core_);
-  take_core(stretch_core(), stretch_core_);
-  take_core(unbent_core(), unbent_core_);
-  if (unbent_core_.mask == core_.mask || unbent_core_.mask == stretch_core_.mask ||
-      stretch_core_.mask == core_.mask)
-    unbent_core_ = {};
-  if (stretch_core_.mask == core_.mask) stretch_core_ = {};
+  cores_.clear();
+  cores_.emplace_back("auto", chosen_core(h), assembler_);
+  bool is_chosen = false;  // so that those that hold it bring nothing
+  for (const auto families : smaller_cores) {
+    ElementCore core = core_of(families);
+    is_chosen |= core.mask() == cores_[0].mask();
+    if (is_chosen || core.mask() == cores_.back().mask())
+      core = ElementCore(core.name(), {}, assembler_);
+    cores_.push_back(std::move(core));
+  }
+  rests_.resize(cores_.size());
+  current_rests_ = &rests_;
 }
 
 void Stepper::begin(const State& state, double h) {
@@ -114,10 +139,7 @@ void Stepper::begin(const State& state, double h) {
   current_guess_ = guess_;
   guess_is_iterate_ = false;
   current_a_ = &a_;
-  if (wants_rho_) {
-    measure_rho();
-    for (Core* core : cores()) core->first_rho = core->rho;
-  }
+  measure_cores(rests_);
   assemble_ms_ = timer.milliseconds();
 }
 
@@ -131,7 +153,7 @@ SolveSummary Stepper::solve(const ConstraintSet& constraints, std::span<const Ve
   for (std::size_t i = 0; i < impulses.size(); ++i) rhs_[i] += per_impulse * impulses[i];
   integrator_->prescribe(constraints, *state_, h_, z_);
   current_a_ = &a_;
-  for (Core* core : cores()) core->rho = core->first_rho;
+  current_rests_ = &rests_;
   current_guess_ = guess_;
   guess_is_iterate_ = false;
   newton_iterations_ = 0;
@@ -189,7 +211,7 @@ double Stepper::relinearise(const ConstraintSet& constraints, std::span<const Ve
   const double per_impulse = integrator_->rhs_per_impulse(*state_, h_);
   for (std::size_t i = 0; i < given_.size(); ++i) rhs_[i] += per_impulse * given_[i];
   current_a_ = &relinearised_a_;
-  if (wants_rho_) measure_rho();
+  measure_cores(relinearised_rests_);
   multiply(relinearised_a_, flat(unknown), flat(impulse_));
   for (std::size_t i = 0; i < rhs_.size(); ++i) impulse_[i] = rhs_[i] - impulse_[i];
   assemble_ms_ += timer.milliseconds();
@@ -206,17 +228,16 @@ double Stepper::free_norm(const ConstraintSet& constraints, std::span<const Vec3
   }));
 }
 
-void Stepper::measure_rho() {
-  std::vector<Core*> asked;
-  std::vector<std::span<const std::uint8_t>> masks;
-  for (Core* core : cores())
-    if (!core->mask.empty()) asked.push_back(core), masks.push_back(core->mask);
-  const std::vector<double> rho = remainder_ratios(*current_a_, masks, external_.masses());
-  for (std::size_t c = 0; c < asked.size(); ++c) asked[c]->rho = rho[c];
+// Of the matrix that has just been assembled, current_a_.
+void Stepper::measure_cores(std::vector<CoreRest>& rests) {
+  rests.resize(cores_.size());
+  measure_rests(cores_, assembler_, *current_a_, external_.masses(), wants_rho_, rests);
+  current_rests_ = &rests;
 }
 
 double Stepper::remainder_ratio() const {
-  return taut::remainder_ratio(*current_a_, core_.mask, external_.masses());
+  if (cores_[0].leaves_larger_elements_out()) return (*current_rests_)[0].rho;
+  return taut::remainder_ratio(*current_a_, cores_[0].mask(), external_.masses());
 }
 
 LinearSystem Stepper::system() const {
@@ -230,10 +251,9 @@ LinearSystem Stepper::system() const {
   system.last = flat(current_guess_);
   system.stiffness = stiffness_;
   system.masses = external_.masses();
-  system.core = core_.mask;
-  system.rho = core_.rho;
-  system.stretch_core = {stretch_core_.mask, stretch_core_.rho};
-  system.unbent_core = {unbent_core_.mask, unbent_core_.rho};
+  system.core = view(cores_[0], (*current_rests_)[0]);
+  for (std::size_t c = 1; c < cores_.size(); ++c)
+    system.other_cores.push_back(view(cores_[c], (*current_rests_)[c]));
   if (state_) system.positions = flat(state_->x);
   return system;
 }

@@ -13,11 +13,12 @@
 // Constraint impulse (N s, on each node): j = (I - S)(A u - b), scaled to an impulse
 // (docs/mathematics.md, 3.6). A positive n·j pushes along n.
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 
+#include "taut/core/element_core.h"
 #include "taut/solve/solver.h"
 #include "taut/step/integrator.h"
 
@@ -59,9 +60,9 @@ class Stepper {
   const BlockCsr& matrix() const { return *current_a_; }
   // Linear solves of the last solve() after its first; 0 unless the integrator is nonlinear.
   int newton_iterations() const { return newton_iterations_; }
-  std::span<const std::uint8_t> core_mask() const { return core_.mask; }
-  // Elements whose blocks off the diagonal are in the core.
-  Index core_springs(CoreUsed core = CoreUsed::own) const;
+  std::span<const std::uint8_t> core_mask() const { return cores_[0].mask(); }
+  // Elements of the core of that name (SolveSummary::core); empty: of the step's own.
+  Index core_springs(std::string_view name = {}) const;
   std::span<const Vec3> unknown() const { return unknown_; }
   // The impulses that the last solve was given, N s; empty if none.
   std::span<const Vec3> impulses() const { return given_; }
@@ -75,12 +76,9 @@ class Stepper {
   double assemble_ms() const { return assemble_ms_; }
   // ρ of docs/mathematics.md, 5 for the assembled system and its core.
   double remainder_ratio() const;
-  // The cores that a solver may be given, for steps of up to h: all stretch springs, these and
-  // shear, or those that are strong (core/core_choice.h).
-  std::vector<std::uint8_t> stretch_core() const {
-    return assembler_.core_mask(ForceClass::stretch);
-  }
-  std::vector<std::uint8_t> unbent_core() const;
+  // Masks of cores that a solver may be given: all elements of these families, or those that are
+  // strong in steps of up to h (core/core_choice.h).
+  std::vector<std::uint8_t> family_core(std::span<const ForceClass> families) const;
   std::vector<std::uint8_t> chosen_core(double h) const;
 
  private:
@@ -88,8 +86,9 @@ class Stepper {
                                SolveSummary first);
   double relinearise(const ConstraintSet& constraints, std::span<const Vec3> unknown);
   double free_norm(const ConstraintSet& constraints, std::span<const Vec3> momentum) const;
-  void measure_rho();
+  void measure_cores(std::vector<CoreRest>& rests);
   std::vector<double> block_bounds(double h) const;
+  std::vector<LargerElement> larger_elements(double h) const;
   void forget_other_unknown(State& state, const std::string& solved_for) const;
 
   std::unique_ptr<Integrator> integrator_;
@@ -101,15 +100,12 @@ class Stepper {
   bool chooses_core_, wants_rho_;
   double core_h_ = 0.0;
   double stiffness_ = -1.0;
-  struct Core {
-    std::vector<std::uint8_t> mask;
-    Index springs = 0;
-    double rho = -1.0, first_rho = -1.0;  // of current_a_ and a_; negative: not asked for
-  };
-  std::array<Core*, 3> cores() { return {&core_, &stretch_core_, &unbent_core_}; }
-  void take_core(std::vector<std::uint8_t> mask, Core& core);
-  // the last two with an empty mask where core_ is as good
-  Core core_, stretch_core_, unbent_core_;
+  ElementCore core_of(std::span<const ForceClass> families) const;
+  // The step's own, then others, with an empty mask where one before it is as good.
+  std::vector<ElementCore> cores_;
+  // What each leaves out of a_, relinearised_a_ and current_a_.
+  std::vector<CoreRest> rests_, relinearised_rests_;
+  const std::vector<CoreRest>* current_rests_ = &rests_;
 
   const State* state_ = nullptr;
   const ConstraintSet* constraints_ = nullptr;
