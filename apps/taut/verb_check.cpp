@@ -5,6 +5,8 @@
 #include "taut/io/obj.h"
 #include "taut/scene/scene_file.h"
 #include "taut/scene/scene_simulation.h"
+#include "taut/sim/cloth_model.h"
+#include "taut/sim/surface_contact.h"
 #include "verbs.h"
 
 namespace taut::app {

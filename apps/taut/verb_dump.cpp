@@ -2,8 +2,10 @@
 
 #include "progress.h"
 #include "taut/base/parallel.h"
+#include "taut/constraint/constraint_set.h"
 #include "taut/results/dump.h"
 #include "taut/scene/scene_file.h"
+#include "taut/sim/cloth_model.h"
 #include "verbs.h"
 
 namespace taut::app {

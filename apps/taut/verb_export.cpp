@@ -5,6 +5,7 @@
 #include "frame_range.h"
 #include "taut/base/error.h"
 #include "taut/results/sequence_export.h"
+#include "taut/sim/cloth_model.h"
 #include "verbs.h"
 
 namespace taut::app {

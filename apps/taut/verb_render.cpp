@@ -8,6 +8,7 @@
 #include "taut/base/error.h"
 #include "taut/base/parallel.h"
 #include "taut/results/frame_picture.h"
+#include "taut/sim/cloth_model.h"
 #include "verbs.h"
 
 namespace taut::app {

@@ -12,11 +12,9 @@
 namespace taut {
 namespace {
 
-Checkpoint sample() {
-  Checkpoint c;
-  c.scene = "title = \"a \\\"quoted\\\" µ\"\n";
-  c.files = {0, ~std::uint64_t{0}, 42};
-  c.steps = 123, c.frame = 45;
+SimulationState sample_state() {
+  SimulationState c;
+  c.clock = {.steps = 123, .origin = 0.25, .since_origin = 7, .h = 5e-3, .longest = 1e-2};
   c.state.time = 1.0 / 3.0;
   c.state.has_previous = true;
   c.state.x = {Vec3(1, -0.0, 1e-300), Vec3(4, 5, 6)};
@@ -30,6 +28,31 @@ Checkpoint sample() {
       ContactForce{.normal = 3.5, .friction = {1, 2, 3}, .inverse_mass = 4.25}};
   c.solver_memory = {1.5, -0.0, 7e-300};
   c.surface_contact = {{{3, 8}, {0, 1}}, {{{1, 2, 3, 4}, {0.5f, -0.0f, 1e-30f}}}};
+  c.gravity = Vec3(0, 1, -2);
+  c.wind = {.velocity = Vec3(1, 2, 3), .gust = 0.5, .gust_frequency = 0.25};
+  c.applied = {Vec3(1, 0, 0), Vec3(0, 1, 0)};
+  c.materials = {{.k_stretch = 7, .bend_model = BendModel::choi_ko}};
+  PinnedNodes pin;
+  pin.nodes = {0}, pin.start = {Vec3(1, 1, 1)}, pin.held = false, pin.awaits_step = true;
+  pin.from = {Vec3(1, 2, 3)}, pin.to = {Vec3(3, 2, 1)}, pin.t1 = 0.5;
+  pin.carrier.key_frames = {{0.5, {}}};
+  c.pins = {pin};
+  Solid solid;
+  solid.name = "ball", solid.radius = 0.5, solid.key_frames = {{1.5, {}}};
+  c.solids = {solid};
+  c.solid_targets = {Pose{.translation = Vec3(1, 2, 3)}};
+  c.awaits_step = {1};
+  c.deformations = {{{Vec3(1, 2, 3)}, {Vec3(4, 5, 6)}, 0.25, 0.5}};
+  c.shape_targets = {{Vec3(9, 9, 9)}};
+  return c;
+}
+
+Checkpoint sample() {
+  Checkpoint c;
+  c.scene = "title = \"a \\\"quoted\\\" µ\"\n";
+  c.files = {0, ~std::uint64_t{0}, 42};
+  c.frame = 45;
+  c.snapshot.bytes = to_bytes(sample_state());
   return c;
 }
 
@@ -52,8 +75,15 @@ TEST(Checkpoint, ComesBackWhole) {
   const Checkpoint c = sample(), again = parse_checkpoint(bytes_of(c), "state.bin");
   EXPECT_EQ(again.scene, c.scene);
   EXPECT_EQ(again.files, c.files);
-  EXPECT_EQ(again.steps, 123);
   EXPECT_EQ(again.frame, 45);
+  EXPECT_TRUE(again.snapshot == c.snapshot);
+  EXPECT_EQ(bytes_of(again), bytes_of(c));
+}
+
+TEST(SimulationState, ComesBackWhole) {
+  const SimulationState c = sample_state(), again = state_from(to_bytes(c), "state");
+  EXPECT_EQ(again.clock.steps, 123);
+  EXPECT_EQ(again.clock.longest, 1e-2);
   EXPECT_EQ(again.state.time, c.state.time);
   EXPECT_TRUE(again.state.has_previous);
   EXPECT_TRUE(again.state.x == c.state.x && again.state.v == c.state.v &&
@@ -62,14 +92,22 @@ TEST(Checkpoint, ComesBackWhole) {
   EXPECT_TRUE(again.contacts == c.contacts);
   EXPECT_EQ(again.solver_memory, c.solver_memory);
   EXPECT_TRUE(again.surface_contact == c.surface_contact);
-  EXPECT_EQ(bytes_of(again), bytes_of(c)) << "to the last bit, the sign of zero too";
+  EXPECT_EQ(again.gravity, c.gravity);
+  EXPECT_TRUE(again.wind == c.wind && again.materials == c.materials && again.solids == c.solids);
+  ASSERT_EQ(again.pins.size(), 1u);
+  EXPECT_FALSE(again.pins[0].held);
+  EXPECT_EQ(again.pins[0].to, c.pins[0].to);
+  EXPECT_TRUE(again.solid_targets == c.solid_targets);
+  EXPECT_EQ(again.deformations[0].to, c.deformations[0].to);
+  EXPECT_EQ(again.shape_targets, c.shape_targets);
+  EXPECT_EQ(to_bytes(again), to_bytes(c)) << "to the last bit, the sign of zero too";
 }
 
 TEST(Checkpoint, EmptyListsComeBackEmpty) {
   const Checkpoint again = parse_checkpoint(bytes_of(Checkpoint{}), "state.bin");
-  EXPECT_TRUE(again.state.x.empty() && again.state.last.empty() && again.contacts.node.empty() &&
-              again.scene.empty());
-  EXPECT_FALSE(again.state.has_previous);
+  EXPECT_TRUE(again.scene.empty() && again.files.empty() && again.snapshot.bytes.empty());
+  const SimulationState none = state_from(to_bytes(SimulationState{}), "state");
+  EXPECT_TRUE(none.state.x.empty() && none.pins.empty() && none.solids.empty());
 }
 
 TEST(Checkpoint, AnyTruncationIsRefused) {

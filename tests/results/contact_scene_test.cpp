@@ -6,9 +6,16 @@
 #include "contact/independent_judge.h"
 #include "taut/base/error.h"
 #include "taut/base/parallel.h"
+#include "taut/constraint/constraint_set.h"
+#include "taut/contact/solid_contact.h"
 #include "taut/results/checkpoint.h"
 #include "taut/scene/scene_file.h"
 #include "taut/scene/scene_simulation.h"
+#include "taut/sim/cloth_model.h"
+#include "taut/sim/surface_contact.h"
+#include "taut/solve/linear_system.h"
+#include "taut/step/state.h"
+#include "taut/step/stepper.h"
 
 namespace taut {
 namespace {

@@ -10,6 +10,7 @@
 #include "taut/io/obj.h"
 #include "taut/results/system_files.h"
 #include "taut/scene/scene_file.h"
+#include "taut/solve/linear_system.h"
 
 namespace taut {
 namespace {

@@ -10,6 +10,7 @@
 
 #include "taut/base/error.h"
 #include "taut/scene/scene_file.h"
+#include "taut/sim/cloth_model.h"
 
 namespace taut::test {
 namespace {

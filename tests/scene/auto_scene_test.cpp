@@ -9,7 +9,9 @@
 
 #include "taut/scene/scene_file.h"
 #include "taut/scene/scene_simulation.h"
+#include "taut/solve/linear_system.h"
 #include "taut/solve/reference.h"
+#include "taut/step/stepper.h"
 
 namespace taut {
 namespace {

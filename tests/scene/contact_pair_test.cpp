@@ -7,6 +7,8 @@
 #include "taut/base/error.h"
 #include "taut/scene/scene_file.h"
 #include "taut/scene/scene_simulation.h"
+#include "taut/sim/cloth_model.h"
+#include "taut/step/state.h"
 
 namespace taut {
 namespace {

@@ -10,6 +10,7 @@
 #include "taut/io/pc2.h"
 #include "taut/scene/scene_file.h"
 #include "taut/scene/scene_simulation.h"
+#include "taut/step/state.h"
 
 namespace taut {
 namespace {

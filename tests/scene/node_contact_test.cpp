@@ -9,8 +9,12 @@
 
 #include "io/temporary_folder.h"
 #include "taut/base/parallel.h"
+#include "taut/contact/solid_contact.h"
 #include "taut/io/obj.h"
 #include "taut/scene/scene_file.h"
+#include "taut/sim/surface_contact.h"
+#include "taut/step/state.h"
+#include "taut/step/stepper.h"
 
 namespace taut {
 namespace {

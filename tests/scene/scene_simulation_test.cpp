@@ -13,8 +13,13 @@
 
 #include "taut/base/error.h"
 #include "taut/base/parallel.h"
+#include "taut/contact/solid_contact.h"
 #include "taut/results/checkpoint.h"
 #include "taut/scene/scene_file.h"
+#include "taut/sim/cloth_model.h"
+#include "taut/sim/surface_contact.h"
+#include "taut/step/state.h"
+#include "taut/step/stepper.h"
 
 namespace taut {
 namespace {

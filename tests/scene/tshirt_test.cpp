@@ -6,6 +6,8 @@
 #include "taut/mesh/topology.h"
 #include "taut/scene/scene_file.h"
 #include "taut/scene/scene_simulation.h"
+#include "taut/sim/cloth_model.h"
+#include "taut/step/state.h"
 #include "test_data.h"
 
 namespace taut {

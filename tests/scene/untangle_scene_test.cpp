@@ -10,9 +10,13 @@
 #include "io/temporary_folder.h"
 #include "scene/tangled_scenes.h"
 #include "taut/base/error.h"
+#include "taut/contact/solid_contact.h"
 #include "taut/io/obj.h"
 #include "taut/scene/scene_file.h"
 #include "taut/scene/scene_simulation.h"
+#include "taut/sim/cloth_model.h"
+#include "taut/sim/surface_contact.h"
+#include "taut/step/state.h"
 
 namespace taut {
 namespace {

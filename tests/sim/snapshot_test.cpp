@@ -1,5 +1,3 @@
-#include "taut/sim/snapshot.h"
-
 #include <gtest/gtest.h>
 
 #include <random>
@@ -8,6 +6,7 @@
 #include "sim/hanging_sheet.h"
 #include "taut/base/error.h"
 #include "taut/base/parallel.h"
+#include "taut/step/state.h"
 
 namespace taut::test {
 namespace {
@@ -43,7 +42,7 @@ void expect_same(const Simulation& a, const Simulation& b) {
   EXPECT_EQ(a.state().x, b.state().x);
   EXPECT_EQ(a.state().v, b.state().v);
   EXPECT_EQ(a.time(), b.time());
-  EXPECT_EQ(to_bytes(a.save()), to_bytes(b.save()));
+  EXPECT_TRUE(a.save() == b.save());
 }
 
 constexpr int steps = 30;
@@ -54,9 +53,9 @@ TEST(Snapshot, GoesOnToTheSameBitsInAnotherThreadBesideOthers) {
   for (const int threads : {1, 2}) {
     set_thread_count(threads);
     Simulation whole(sheet.world);
-    std::vector<std::string> at(steps + 1);
+    std::vector<Snapshot> at(steps + 1);
     for (int k = 0; k < steps; ++k) {
-      at[static_cast<std::size_t>(k)] = to_bytes(whole.save());
+      at[static_cast<std::size_t>(k)] = whole.save();
       go(whole, sheet, k, k + 1);
     }
     for (int trial = 0; trial < 10; ++trial) {
@@ -71,7 +70,7 @@ TEST(Snapshot, GoesOnToTheSameBitsInAnotherThreadBesideOthers) {
           for (int k = 0; k < 10; ++k) EXPECT_TRUE(other->step(h).ok());
         });
       beside.emplace_back([&] {
-        resumed.load(snapshot_from(at[static_cast<std::size_t>(from)], "trial"));
+        resumed.load(at[static_cast<std::size_t>(from)]);
         go(resumed, sheet, from, steps);
       });
       for (std::thread& t : beside) t.join();
@@ -109,14 +108,15 @@ TEST(Snapshot, OfAnotherWorldOrDamagedIsRefused) {
   const HangingSheet sheet, other(8);
   Simulation simulation(sheet.world), another(other.world);
   EXPECT_THROW(another.load(simulation.save()), InputError);
-  std::string bytes = to_bytes(simulation.save());
-  EXPECT_NO_THROW(snapshot_from(bytes, "it"));
-  for (std::size_t at = 0; at < bytes.size(); at += 97) {
-    std::string damaged = bytes;
-    damaged[at] = static_cast<char>(damaged[at] ^ 1);
-    EXPECT_THROW(snapshot_from(damaged, "it"), InputError);
-    EXPECT_THROW(snapshot_from(bytes.substr(0, at), "it"), InputError);
+  const Snapshot whole = simulation.save();
+  EXPECT_NO_THROW(simulation.load(whole));
+  for (std::size_t at = 0; at < whole.bytes.size(); at += 97) {
+    Snapshot damaged = whole;
+    damaged.bytes[at] = static_cast<char>(damaged.bytes[at] ^ 1);
+    EXPECT_THROW(simulation.load(damaged), InputError);
+    EXPECT_THROW(simulation.load({whole.bytes.substr(0, at)}), InputError);
   }
+  EXPECT_TRUE(simulation.save() == whole);
 }
 
 }  // namespace

@@ -19,6 +19,9 @@
 #include "taut/io/child_process.h"
 #include "taut/io/obj.h"
 #include "taut/scene/scene_file.h"
+#include "taut/sim/cloth_model.h"
+#include "taut/sim/surface_contact.h"
+#include "taut/step/state.h"
 
 namespace taut::app {
 

@@ -10,6 +10,7 @@
 #include "bench/quiet.h"
 #include "taut/base/parallel.h"
 #include "taut/base/timer.h"
+#include "taut/solve/linear_system.h"
 #include "taut/solve/reference.h"
 
 namespace taut::app {

@@ -16,11 +16,16 @@
 #include "bench/table.h"
 #include "taut/base/error.h"
 #include "taut/base/timer.h"
+#include "taut/constraint/constraint_set.h"
+#include "taut/contact/solid_contact.h"
 #include "taut/core/core_bound.h"
 #include "taut/scene/scene_file.h"
+#include "taut/sim/cloth_model.h"
 #include "taut/solve/core_spectrum.h"
+#include "taut/solve/linear_system.h"
 #include "taut/solve/reference.h"
 #include "taut/solve/solver_registry.h"
+#include "taut/step/state.h"
 
 namespace taut::app {
 

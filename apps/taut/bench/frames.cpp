@@ -15,6 +15,9 @@
 #include "bench/table.h"
 #include "taut/linalg/lanczos.h"
 #include "taut/scene/scene_file.h"
+#include "taut/sim/cloth_model.h"
+#include "taut/solve/linear_system.h"
+#include "taut/step/stepper.h"
 
 namespace taut::app {
 

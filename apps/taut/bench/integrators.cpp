@@ -13,6 +13,7 @@
 #include "bench/table.h"
 #include "taut/base/timer.h"
 #include "taut/scene/scene_file.h"
+#include "taut/step/state.h"
 
 namespace taut::app {
 

@@ -11,12 +11,17 @@
 #include "taut/base/parallel.h"
 #include "taut/base/timer.h"
 #include "taut/constraint/reduction.h"
+#include "taut/contact/solid_contact.h"
 #include "taut/core/block_remainder.h"
 #include "taut/linalg/block_cholesky.h"
 #include "taut/linalg/sparse_cholesky.h"
 #include "taut/scene/scene_file.h"
+#include "taut/sim/cloth_model.h"
 #include "taut/solve/full_space.h"
+#include "taut/solve/linear_system.h"
 #include "taut/solve/solver.h"
+#include "taut/step/state.h"
+#include "taut/step/stepper.h"
 
 namespace taut::app {
 

@@ -20,6 +20,10 @@
 #include "bench/table.h"
 #include "taut/base/error.h"
 #include "taut/scene/scene_file.h"
+#include "taut/sim/simulation_state.h"
+#include "taut/solve/linear_system.h"
+#include "taut/step/state.h"
+#include "taut/step/stepper.h"
 
 namespace taut::app {
 
@@ -121,11 +125,11 @@ class Scale {
     const int nodes = side * side;
     fmt::print(stderr, "scale: {} nodes ...\n", nodes);
     SceneSimulation simulation(sheet(side));
-    Snapshot start = simulation.save();
+    SimulationState start = simulation.full_state();
     start.state = interpolated(coarse_->state(), start_side, side);
     start.clock.steps = start.clock.since_origin = coarse_->steps_done();
     start.clock.h = simulation.scene().time.step;
-    simulation.load(start);
+    simulation.set_full_state(start);
     StepReport record;
     for (int step = 0; step < own_steps; ++step)
       if (const Status status = simulation.step(record); !status.ok())

@@ -6,6 +6,8 @@
 #include "bench/paper_tables.h"
 #include "bench/table.h"
 #include "taut/scene/scene_file.h"
+#include "taut/sim/cloth_model.h"
+#include "taut/step/state.h"
 
 namespace taut::app {
 

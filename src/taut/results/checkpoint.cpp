@@ -9,7 +9,7 @@ namespace taut {
 
 namespace {
 
-constexpr std::string_view magic = "TAUTCKP6";
+constexpr std::string_view checkpoint_magic = "TAUTCKP6";
 
 std::uint64_t checksum(std::string_view bytes) {
   Checksum sum;
@@ -21,11 +21,11 @@ std::uint64_t checksum(std::string_view bytes) {
 
 void write(std::ostream& out, const Checkpoint& checkpoint) {
   ArchiveWriter writer;
-  for (const char c : magic) writer.value(c);
+  for (const char c : checkpoint_magic) writer.value(c);
   writer.list(checkpoint.scene);
   writer.value(checkpoint.frame);
   writer.list(checkpoint.files);
-  writer.list(to_bytes(checkpoint.snapshot));
+  writer.list(checkpoint.snapshot.bytes);
   writer.value(checksum(writer.bytes()));
   out.write(writer.bytes().data(), static_cast<std::streamsize>(writer.bytes().size()));
 }
@@ -33,20 +33,19 @@ void write(std::ostream& out, const Checkpoint& checkpoint) {
 Checkpoint parse_checkpoint(const std::string& bytes, const std::string& name) {
   constexpr std::size_t sum_size = sizeof(std::uint64_t);
   const ArchiveReader damaged({}, name);
-  if (bytes.size() < magic.size() + sum_size || !bytes.starts_with(magic)) damaged.fail();
+  if (bytes.size() < checkpoint_magic.size() + sum_size || !bytes.starts_with(checkpoint_magic))
+    damaged.fail();
   const std::string_view content(bytes.data(), bytes.size() - sum_size);
   std::uint64_t sum = 0;
   std::memcpy(&sum, bytes.data() + content.size(), sizeof(sum));
   if (sum != checksum(content)) damaged.fail();
-  ArchiveReader reader(content.substr(magic.size()), name);
+  ArchiveReader reader(content.substr(checkpoint_magic.size()), name);
   Checkpoint checkpoint;
-  std::string snapshot;
   reader.list(checkpoint.scene);
   reader.value(checkpoint.frame);
   reader.list(checkpoint.files);
-  reader.list(snapshot);
+  reader.list(checkpoint.snapshot.bytes);
   if (!reader.at_end()) reader.fail();
-  checkpoint.snapshot = snapshot_from(snapshot, name);
   return checkpoint;
 }
 

@@ -1,6 +1,7 @@
 #include "taut/base/error.h"
 #include "taut/results/frame_picture.h"
 #include "taut/results/run.h"
+#include "taut/sim/cloth_model.h"
 
 namespace taut {
 

@@ -8,7 +8,11 @@
 #include "taut/base/file.h"
 #include "taut/io/matrix_market.h"
 #include "taut/results/dump_meta.h"
+#include "taut/sim/cloth_model.h"
+#include "taut/solve/linear_system.h"
 #include "taut/solve/preconditioner_choice.h"
+#include "taut/step/state.h"
+#include "taut/step/stepper.h"
 
 namespace taut {
 

@@ -31,6 +31,7 @@
 #include <functional>
 
 #include "taut/scene/scene_simulation.h"
+#include "taut/solve/linear_system.h"
 
 namespace taut {
 

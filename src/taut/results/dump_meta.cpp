@@ -4,6 +4,12 @@
 #include <nlohmann/json.hpp>
 
 #include "taut/base/simd.h"
+#include "taut/constraint/constraint_set.h"
+#include "taut/contact/solid_contact.h"
+#include "taut/sim/cloth_model.h"
+#include "taut/solve/linear_system.h"
+#include "taut/step/state.h"
+#include "taut/step/stepper.h"
 
 namespace taut {
 

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "taut/scene/scene_simulation.h"
+#include "taut/solve/linear_system.h"
 
 namespace taut {
 

@@ -7,6 +7,7 @@
 
 #include "taut/base/error.h"
 #include "taut/picture/contact_sheet.h"
+#include "taut/sim/cloth_model.h"
 
 namespace taut {
 

@@ -13,6 +13,7 @@
 #include "taut/picture/render.h"
 #include "taut/results/results.h"
 #include "taut/results/solid_shapes.h"
+#include "taut/sim/cloth_model.h"
 
 namespace taut {
 

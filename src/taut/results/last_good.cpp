@@ -4,6 +4,9 @@
 #include "taut/picture/contact_sheet.h"
 #include "taut/results/frame_picture.h"
 #include "taut/results/run.h"
+#include "taut/sim/cloth_model.h"
+#include "taut/sim/surface_contact.h"
+#include "taut/step/state.h"
 
 namespace taut {
 

@@ -9,6 +9,7 @@
 #include "taut/base/file.h"
 #include "taut/scene/scene_file.h"
 #include "taut/scene/scene_world.h"
+#include "taut/sim/cloth_model.h"
 
 namespace taut {
 

@@ -12,6 +12,7 @@
 //                      (outside its thickness) is below 0.1 mm + 2e-4 of its size, else 0
 
 #include "taut/results/results.h"
+#include "taut/sim/cloth_model.h"
 
 namespace taut {
 

@@ -14,6 +14,8 @@
 #include "taut/results/checkpoint.h"
 #include "taut/results/solid_shapes.h"
 #include "taut/scene/scene_file.h"
+#include "taut/sim/cloth_model.h"
+#include "taut/sim/simulation_state.h"
 
 namespace taut {
 
@@ -257,6 +259,7 @@ void ResultsFolder::write_checkpoint(const SceneSimulation& simulation, int fram
 CheckpointPlace ResultsFolder::read_checkpoint(SceneSimulation& simulation) const {
   Checkpoint checkpoint =
       parse_checkpoint(read_file(checkpoint_file()), checkpoint_file().string());
+  const SimulationState state = state_from(checkpoint.snapshot.bytes, checkpoint_file().string());
   const std::string scene = scene_to_toml(simulation.scene());
   if (without_length(checkpoint.scene) != without_length(scene))
     throw InputError(
@@ -270,15 +273,15 @@ CheckpointPlace ResultsFolder::read_checkpoint(SceneSimulation& simulation) cons
                        fmt::format("has changed since {} was written; bring the old file back, or "
                                    "run the scene anew with `taut run`",
                                    checkpoint_file().string()));
-  if (static_cast<Index>(checkpoint.snapshot.state.x.size()) != simulation.cloth().nodes() ||
+  if (static_cast<Index>(state.state.x.size()) != simulation.cloth().nodes() ||
       checkpoint.files.size() != files.size())
     throw InputError({checkpoint_file().string()},
                      fmt::format("has {} nodes and {} mesh files, the scene has {} and {}: run the "
                                  "scene anew with `taut run`",
-                                 checkpoint.snapshot.state.x.size(), checkpoint.files.size(),
+                                 state.state.x.size(), checkpoint.files.size(),
                                  simulation.cloth().nodes(), files.size()));
   try {
-    simulation.load(checkpoint.snapshot);
+    simulation.set_full_state(state);
   } catch (const InputError& error) {
     throw InputError({checkpoint_file().string()},
                      std::string(error.what()) + "; run the scene anew with `taut run`");

@@ -9,7 +9,11 @@
 #include "taut/base/parallel.h"
 #include "taut/base/simd.h"
 #include "taut/base/timer.h"
+#include "taut/sim/cloth_model.h"
 #include "taut/sim/node_contact.h"
+#include "taut/sim/surface_contact.h"
+#include "taut/step/state.h"
+#include "taut/step/stepper.h"
 
 namespace taut {
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "taut/base/error.h"
+#include "taut/sim/cloth_model.h"
 
 namespace taut {
 
@@ -149,7 +150,8 @@ std::vector<std::filesystem::path> SequenceExport::files_of_other_frames() const
 
 std::string SequenceExport::written_to() const {
   const std::filesystem::path file = options_.folder / options_.file_name;
-  if (options_.file_name.empty() || std::filesystem::exists(file)) return file.lexically_normal().string();
+  if (options_.file_name.empty() || std::filesystem::exists(file))
+    return file.lexically_normal().string();
   const std::string pattern = file.stem().string() + "_*" + file.extension().string();
   return (options_.folder / pattern).lexically_normal().string();
 }

@@ -1,5 +1,10 @@
 #include "taut/sim/node_contact.h"
 
+#include "taut/contact/solid_contact.h"
+#include "taut/sim/cloth_model.h"
+#include "taut/sim/surface_contact.h"
+#include "taut/step/state.h"
+
 namespace taut {
 
 static_assert(touches_solid == touched_solid && touches_cloth == touched_cloth);

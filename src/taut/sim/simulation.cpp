@@ -1,4 +1,4 @@
-#include "taut/sim/simulation.h"
+#include "taut/sim/simulation_parts.h"
 
 #include <fmt/format.h>
 
@@ -43,57 +43,75 @@ SolidContact make_solid_contact(const World& world, const ClothModel& cloth,
 
 }  // namespace
 
+Simulation::Parts::Parts(World valid_world, SimulationOptions valid_options)
+    : world(std::move(valid_world)),
+      options(std::move(valid_options)),
+      cloth(world),
+      contact(make_solid_contact(world, cloth, variant_of)),
+      surface_contact(SurfaceContact::wanted(world) ? std::make_unique<SurfaceContact>(world, cloth)
+                                                    : nullptr),
+      fallback(options.solver),
+      state(cloth.start()),
+      solid_targets(world.solids().size()),
+      awaits_step(world.solids().size(), 0),
+      shape_targets(world.solids().size()) {}
+
 Simulation::Simulation(World world, SimulationOptions options)
-    : world_(valid(std::move(world))),
-      options_(valid(std::move(options))),
-      cloth_(world_),
-      contact_(make_solid_contact(world_, cloth_, variant_of_)),
-      surface_contact_(SurfaceContact::wanted(world_)
-                           ? std::make_unique<SurfaceContact>(world_, cloth_)
-                           : nullptr),
-      fallback_(options_.solver),
-      state_(cloth_.start()),
-      solid_targets_(world_.solids().size()),
-      awaits_step_(world_.solids().size(), 0),
-      shape_targets_(world_.solids().size()) {
+    : parts_(std::make_unique<Parts>(valid(std::move(world)), valid(std::move(options)))) {
   make_stepper();
 }
 
 Simulation::~Simulation() = default;
 
+double Simulation::time() const { return parts_->state.time; }
+int Simulation::steps_done() const { return parts_->clock.steps; }
+const World& Simulation::world() const { return parts_->world; }
+const SimulationOptions& Simulation::options() const { return parts_->options; }
+const ClothModel& Simulation::cloth() const { return parts_->cloth; }
+const State& Simulation::state() const { return parts_->state; }
+const SolidContact& Simulation::contact() const { return parts_->contact; }
+Stepper& Simulation::stepper() { return *parts_->stepper; }
+const Stepper& Simulation::stepper() const { return *parts_->stepper; }
+const ConstraintSet& Simulation::constraints() const { return parts_->constraints; }
+SurfaceContact* Simulation::surface_contact() { return parts_->surface_contact.get(); }
+const SurfaceContact* Simulation::surface_contact() const { return parts_->surface_contact.get(); }
+
 // A new one goes on as the old one would.
 void Simulation::make_stepper() {
-  ExternalForces external = stepper_ ? stepper_->external() : cloth_.external();
-  const std::vector<double> memory = stepper_ ? stepper_->solver().memory() : std::vector<double>{};
-  stepper_ = std::make_unique<Stepper>(cloth_.nodes(), cloth_.force_models(), std::move(external),
-                                       options_.integrator, options_.solver, options_.newton);
-  stepper_->solver().restore_memory(memory);
+  ExternalForces external =
+      parts_->stepper ? parts_->stepper->external() : parts_->cloth.external();
+  const std::vector<double> memory =
+      parts_->stepper ? parts_->stepper->solver().memory() : std::vector<double>{};
+  parts_->stepper = std::make_unique<Stepper>(parts_->cloth.nodes(), parts_->cloth.force_models(),
+                                              std::move(external), parts_->options.integrator,
+                                              parts_->options.solver, parts_->options.newton);
+  parts_->stepper->solver().restore_memory(memory);
   // Halved steps keep the core of whole ones, and its symbolic work.
-  if (clock_.longest > 0.0) stepper_->choose_core(clock_.longest);
+  if (parts_->clock.longest > 0.0) parts_->stepper->choose_core(parts_->clock.longest);
 }
 
 void Simulation::prepare(double h) {
-  if (h <= clock_.longest) return;
-  clock_.longest = h;
-  if (options_.integrator == IntegratorKind::imex_adaptive) {
-    cloth_.make_springs(world_, h);
+  if (h <= parts_->clock.longest) return;
+  parts_->clock.longest = h;
+  if (parts_->options.integrator == IntegratorKind::imex_adaptive) {
+    parts_->cloth.make_springs(parts_->world, h);
     make_stepper();
   } else {
-    stepper_->choose_core(h);
+    parts_->stepper->choose_core(h);
   }
 }
 
 WorstStretch Simulation::worst_stretch() const {
   WorstStretch worst;
   const Spring* where = nullptr;
-  for (const SpringModel* model : cloth_.stretch_springs()) {
-    const std::vector<double> strains = spring_strains(*model, state_.x);
+  for (const SpringModel* model : parts_->cloth.stretch_springs()) {
+    const std::vector<double> strains = spring_strains(*model, parts_->state.x);
     for (std::size_t s = 0; s < strains.size(); ++s)
       if (!where || strains[s] > worst.stretch)
         worst.stretch = strains[s], where = &model->springs()[s];
   }
   if (!where) return worst;
-  for (const ClothPart& part : cloth_.parts())
+  for (const ClothPart& part : parts_->cloth.parts())
     if (where->i >= part.first_node && where->i < part.first_node + part.node_count)
       worst.cloth = part.name, worst.i = where->i - part.first_node,
       worst.j = where->j - part.first_node;
@@ -108,20 +126,21 @@ StepReport Simulation::step(double h) {
     v.finish();
   }
   prepare(h);
-  if (h != clock_.h) clock_.origin = state_.time, clock_.since_origin = 0, clock_.h = h;
+  if (h != parts_->clock.h)
+    parts_->clock.origin = parts_->state.time, parts_->clock.since_origin = 0, parts_->clock.h = h;
   StepReport record;
-  record.step = clock_.steps + 1;
-  state_.time = clock_.origin + clock_.since_origin * h;
+  record.step = parts_->clock.steps + 1;
+  parts_->state.time = parts_->clock.origin + parts_->clock.since_origin * h;
   begin_moves(h);
   if (record.status = advance(h, 0, record); !record.ok()) {
-    record.status.message =
-        fmt::format("step {} (t = {:.6g} s): {}", record.step, state_.time, record.status.message);
+    record.status.message = fmt::format("step {} (t = {:.6g} s): {}", record.step,
+                                        parts_->state.time, record.status.message);
     return record;
   }
   end_moves();
-  ++clock_.steps;
-  state_.time = clock_.origin + ++clock_.since_origin * h;
-  record.time = state_.time;
+  ++parts_->clock.steps;
+  parts_->state.time = parts_->clock.origin + ++parts_->clock.since_origin * h;
+  record.time = parts_->state.time;
   note_state(record);
   look_for_intersections(record);
   record.step_ms = timer.milliseconds();
@@ -129,36 +148,37 @@ StepReport Simulation::step(double h) {
 }
 
 Status Simulation::advance(double h, int halvings, StepReport& record) {
-  const bool may_halve = halvings < options_.max_halvings;
+  const bool may_halve = halvings < parts_->options.max_halvings;
   double beyond = 0.0;
   Status status = try_step(h, may_halve, beyond, record);
-  if (status.ok() && halvings == 0 && on_solved) on_solved(last_summary_);
-  const bool overshot = status.ok() && beyond > options_.overshoot_limit;
+  if (status.ok() && halvings == 0 && on_solved) on_solved(parts_->last_summary);
+  const bool overshot = status.ok() && beyond > parts_->options.overshoot_limit;
   if (may_halve && (!status.ok() || overshot)) return advance_halves(h, halvings, record);
   // Without halving, as in the paper, it is the user's choice to accept what comes.
-  if (overshot && options_.max_halvings > 0) record.overshoot = std::max(record.overshoot, beyond);
+  if (overshot && parts_->options.max_halvings > 0)
+    record.overshoot = std::max(record.overshoot, beyond);
   if (status.ok()) status = accept(h, record);
   return status.ok() || !may_halve ? status : advance_halves(h, halvings, record);
 }
 
 Status Simulation::advance_halves(double h, int halvings, StepReport& record) {
   ++record.retries;
-  const State state = state_;
-  const ContactState contacts = contact_.state();
+  const State state = parts_->state;
+  const ContactState contacts = parts_->contact.state();
   const ClothContactState surface_contact =
-      surface_contact_ ? surface_contact_->state() : ClothContactState{};
+      parts_->surface_contact ? parts_->surface_contact->state() : ClothContactState{};
   Status status;
   for (int half = 0; half < 2 && status.ok(); ++half) {
-    stepper_->start_afresh(state_);
+    parts_->stepper->start_afresh(parts_->state);
     status = advance(h / 2, halvings + 1, record);
   }
   if (status.ok()) {
-    stepper_->start_afresh(state_);
+    parts_->stepper->start_afresh(parts_->state);
   } else {
-    state_ = state;
-    contact_.restore(contacts);
-    if (surface_contact_) surface_contact_->restore(surface_contact);
-    if (halvings + 1 == options_.max_halvings)
+    parts_->state = state;
+    parts_->contact.restore(contacts);
+    if (parts_->surface_contact) parts_->surface_contact->restore(surface_contact);
+    if (halvings + 1 == parts_->options.max_halvings)
       status.message += fmt::format(" (also with steps of {:.3g} s)", h / 2);
   }
   return status;
@@ -166,62 +186,65 @@ Status Simulation::advance_halves(double h, int halvings, StepReport& record) {
 
 double Simulation::largest_overshoot() const {
   // it has iterated until the forces at the end agree
-  if (stepper_->integrator().is_nonlinear()) return 0.0;
+  if (parts_->stepper->integrator().is_nonlinear()) return 0.0;
   double largest = 0.0;
-  for (const SpringModel* model : cloth_.stretch_springs())
-    largest = std::max(largest, taut::largest_overshoot(*model, state_.x, stepper_->x_end()));
+  for (const SpringModel* model : parts_->cloth.stretch_springs())
+    largest = std::max(largest,
+                       taut::largest_overshoot(*model, parts_->state.x, parts_->stepper->x_end()));
   return largest;
 }
 
 Status Simulation::try_step(double h, bool may_halve, double& overshoot, StepReport& record) {
-  pins_.reset(cloth_.nodes());
-  cloth_.constrain_pins(state_.time, h, state_.x, pins_);
-  held_ = pins_;
-  if (surface_contact_) surface_contact_->hold_zones(state_, h, held_);
-  stepper_->begin(state_, h);
-  record.assemble_ms += stepper_->assemble_ms();
+  parts_->pins.reset(parts_->cloth.nodes());
+  parts_->cloth.constrain_pins(parts_->state.time, h, parts_->state.x, parts_->pins);
+  parts_->held = parts_->pins;
+  if (parts_->surface_contact) parts_->surface_contact->hold_zones(parts_->state, h, parts_->held);
+  parts_->stepper->begin(parts_->state, h);
+  record.assemble_ms += parts_->stepper->assemble_ms();
   Timer contact_timer;
-  std::vector<Vec3> predicted(state_.x.size());
-  for (std::size_t i = 0; i < predicted.size(); ++i) predicted[i] = state_.x[i] + h * state_.v[i];
-  contact_.begin_step(state_.time, h, state_.x, predicted, held_);
+  std::vector<Vec3> predicted(parts_->state.x.size());
+  for (std::size_t i = 0; i < predicted.size(); ++i)
+    predicted[i] = parts_->state.x[i] + h * parts_->state.v[i];
+  parts_->contact.begin_step(parts_->state.time, h, parts_->state.x, predicted, parts_->held);
   record.contact_ms += contact_timer.milliseconds();
   return solve_passes(may_halve, overshoot, record);
 }
 
 Status Simulation::correct(double h, std::vector<Vec3>& corrected, bool& changed,
                            StepReport& record) {
-  changed = contact_.move_out(corrected) > 0;
-  if (!surface_contact_) return {};
-  std::vector<Vec3> v_end(stepper_->v_end().begin(), stepper_->v_end().end());
+  changed = parts_->contact.move_out(corrected) > 0;
+  if (!parts_->surface_contact) return {};
+  std::vector<Vec3> v_end(parts_->stepper->v_end().begin(), parts_->stepper->v_end().end());
   if (changed)
     for (std::size_t i = 0; i < v_end.size(); ++i)
-      v_end[i] += (corrected[i] - stepper_->x_end()[i]) / h;
-  Status status = surface_contact_->correct(state_.time, h, state_.x, v_end, pins_, contact_,
-                                            corrected, changed);
+      v_end[i] += (corrected[i] - parts_->stepper->x_end()[i]) / h;
+  Status status =
+      parts_->surface_contact->correct(parts_->state.time, h, parts_->state.x, v_end, parts_->pins,
+                                       parts_->contact, corrected, changed);
   note_surface_contact(record);
   return status;
 }
 
 Status Simulation::accept(double h, StepReport& record) {
   Timer contact_timer;
-  std::vector<Vec3> corrected(stepper_->x_end().begin(), stepper_->x_end().end());
+  std::vector<Vec3> corrected(parts_->stepper->x_end().begin(), parts_->stepper->x_end().end());
   bool changed = false;
   const Status status = correct(h, corrected, changed, record);
   record.contact_ms += contact_timer.milliseconds();
   if (!status.ok()) return status;
-  contact_.keep();
-  if (surface_contact_) surface_contact_->keep();
-  record.contact_moved += contact_.counts().moved;
-  record.deepest_m = std::max(record.deepest_m, contact_.deepest());
-  record.contacts =
-      contact_.contacts() + (surface_contact_ ? surface_contact_->counts().pushing : 0);
-  stepper_->commit(state_);
-  if (changed) stepper_->correct(state_, corrected, h);
+  parts_->contact.keep();
+  if (parts_->surface_contact) parts_->surface_contact->keep();
+  record.contact_moved += parts_->contact.counts().moved;
+  record.deepest_m = std::max(record.deepest_m, parts_->contact.deepest());
+  record.contacts = parts_->contact.contacts() +
+                    (parts_->surface_contact ? parts_->surface_contact->counts().pushing : 0);
+  parts_->stepper->commit(parts_->state);
+  if (changed) parts_->stepper->correct(parts_->state, corrected, h);
   return {};
 }
 
 void Simulation::note_surface_contact(StepReport& record) const {
-  const ClothContactCounts& counts = surface_contact_->counts();
+  const ClothContactCounts& counts = parts_->surface_contact->counts();
   record.pairs_tested += counts.tested;
   record.near_pairs = counts.near;
   record.pushing_pairs = counts.pushing;
@@ -236,11 +259,11 @@ void Simulation::note_surface_contact(StepReport& record) const {
 }
 
 void Simulation::look_for_intersections(StepReport& record) {
-  const int every = world_.contact.check_every;
-  if (!surface_contact_ || every == 0 || clock_.steps % every != 0) return;
+  const int every = parts_->world.contact.check_every;
+  if (!parts_->surface_contact || every == 0 || parts_->clock.steps % every != 0) return;
   Timer timer;
-  record.intersections =
-      static_cast<int>(surface_contact_->intersections(state_.time, state_.x).size());
+  record.intersections = static_cast<int>(
+      parts_->surface_contact->intersections(parts_->state.time, parts_->state.x).size());
   record.check_ms = timer.milliseconds();
 }
 
@@ -249,37 +272,37 @@ void Simulation::look_for_intersections(StepReport& record) {
 Status Simulation::solve_passes(bool may_halve, double& overshoot, StepReport& record) {
   SolveSummary summary;
   for (bool again = true; again;) {
-    constraints_ = held_;
+    parts_->constraints = parts_->held;
     Timer contact_timer;
-    contact_.constrain(constraints_);
+    parts_->contact.constrain(parts_->constraints);
     record.contact_ms += contact_timer.milliseconds();
-    const double assembled = stepper_->assemble_ms();
+    const double assembled = parts_->stepper->assemble_ms();
     summary = solve_or_fall_back();
-    record.assemble_ms += stepper_->assemble_ms() - assembled;
+    record.assemble_ms += parts_->stepper->assemble_ms() - assembled;
     note_solve(summary, record);
     ++record.contact_passes;
     if (!summary.status.ok()) return summary.status;
     overshoot = largest_overshoot();
     contact_timer.lap();
-    again = !(may_halve && overshoot > options_.overshoot_limit) &&
-            contact_.update(stepper_->x_end(), stepper_->constraint_impulse());
+    again = !(may_halve && overshoot > parts_->options.overshoot_limit) &&
+            parts_->contact.update(parts_->stepper->x_end(), parts_->stepper->constraint_impulse());
     record.contact_ms += contact_timer.milliseconds();
   }
-  record.dof = constraints_.free_dofs();
-  record.constraints = constraints_.constrained_dofs();
-  last_summary_ = std::move(summary);
+  record.dof = parts_->constraints.free_dofs();
+  record.constraints = parts_->constraints.constrained_dofs();
+  parts_->last_summary = std::move(summary);
   return {};
 }
 
 SolveSummary Simulation::solve_or_fall_back() {
-  return fallback_.solve(stepper_->solver(), [&](ConstrainedSolver& solver) {
-    return stepper_->solve(constraints_, contact_.impulses(), solver);
+  return parts_->fallback.solve(parts_->stepper->solver(), [&](ConstrainedSolver& solver) {
+    return parts_->stepper->solve(parts_->constraints, parts_->contact.impulses(), solver);
   });
 }
 
 void Simulation::note_solve(const SolveSummary& summary, StepReport& record) const {
   record.solver = summary.method;
-  record.newton_iterations += stepper_->newton_iterations();
+  record.newton_iterations += parts_->stepper->newton_iterations();
   record.fallbacks += summary.fallbacks;
   if (record.contact_passes == 0 || summary.precision == std::string_view("double"))
     record.precision = summary.precision;
@@ -289,7 +312,7 @@ void Simulation::note_solve(const SolveSummary& summary, StepReport& record) con
   record.factor_ms += summary.factor_ms;
   record.solve_ms += summary.solve_ms + summary.reduce_ms;
   if (solver_traits(summary.method).bounds_iterations)
-    record.core_springs = stepper_->core_springs(summary.core);
+    record.core_springs = parts_->stepper->core_springs(summary.core);
   // `auto` may change its method between passes: iterations of one without a bound are not to be
   // held against another's.
   const int bound = summary.bound_iterations;
@@ -298,19 +321,19 @@ void Simulation::note_solve(const SolveSummary& summary, StepReport& record) con
 }
 
 void Simulation::note_state(StepReport& record) const {
-  record.nodes = cloth_.nodes();
-  const auto masses = cloth_.external().masses();
-  record.kinetic_J = ordered_sum(cloth_.nodes(), [&](Index begin, Index end) {
+  record.nodes = parts_->cloth.nodes();
+  const auto masses = parts_->cloth.external().masses();
+  record.kinetic_J = ordered_sum(parts_->cloth.nodes(), [&](Index begin, Index end) {
     double sum = 0.0;
-    for (Index i = begin; i < end; ++i) sum += 0.5 * masses[i] * state_.v[i].squaredNorm();
+    for (Index i = begin; i < end; ++i) sum += 0.5 * masses[i] * parts_->state.v[i].squaredNorm();
     return sum;
   });
-  for (const auto& model : cloth_.springs()) {
-    record.elastic_J += model->energy(state_.x);
-    record.collapsed_springs += model->collapsed(state_.x);
+  for (const auto& model : parts_->cloth.springs()) {
+    record.elastic_J += model->energy(parts_->state.x);
+    record.collapsed_springs += model->collapsed(parts_->state.x);
   }
-  for (const SpringModel* model : cloth_.stretch_springs())
-    record.max_stretch = std::max(record.max_stretch, largest_strain(*model, state_.x));
+  for (const SpringModel* model : parts_->cloth.stretch_springs())
+    record.max_stretch = std::max(record.max_stretch, largest_strain(*model, parts_->state.x));
 }
 
 }  // namespace taut

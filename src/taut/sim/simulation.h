@@ -14,17 +14,26 @@
 
 #include <functional>
 #include <memory>
+#include <span>
 
-#include "taut/contact/solid_contact.h"
-#include "taut/sim/cloth_model.h"
 #include "taut/sim/simulation_options.h"
 #include "taut/sim/snapshot.h"
 #include "taut/sim/step_report.h"
-#include "taut/sim/surface_contact.h"
-#include "taut/solve/fallback.h"
-#include "taut/step/stepper.h"
+#include "taut/sim/world.h"
 
 namespace taut {
+
+class ClothModel;
+class ConstraintSet;
+class MeshSolid;
+class SolidContact;
+class Stepper;
+class SurfaceContact;
+struct ClothPart;
+struct PinnedNodes;
+struct SimulationState;
+struct SolveSummary;
+struct State;
 
 // The stretch spring that is longest for its rest length.
 struct WorstStretch {
@@ -43,12 +52,12 @@ class Simulation {
 
   // The next h seconds. Throws InputError for an h that is no step size.
   StepReport step(double h);
-  double time() const { return state_.time; }  // s
-  int steps_done() const { return clock_.steps; }
+  double time() const;  // s
+  int steps_done() const;
 
   // m and m/s, one a node of the cloth; valid until the next step.
-  std::span<const Vec3> positions(ClothHandle cloth) const { return part(cloth, state_.x); }
-  std::span<const Vec3> velocities(ClothHandle cloth) const { return part(cloth, state_.v); }
+  std::span<const Vec3> positions(ClothHandle cloth) const;
+  std::span<const Vec3> velocities(ClothHandle cloth) const;
 
   // For the steps to come. A handle that is none of this world's, a list of another length and
   // values out of range are InputErrors.
@@ -77,18 +86,24 @@ class Simulation {
   // Throws InputError for a snapshot of another world, or of a solver that is not this one's.
   void load(const Snapshot& snapshot);
 
-  const World& world() const { return world_; }
-  const SimulationOptions& options() const { return options_; }
-  const ClothModel& cloth() const { return cloth_; }
-  const State& state() const { return state_; }
+  const World& world() const;
+  const SimulationOptions& options() const;
   WorstStretch worst_stretch() const;
-  const SolidContact& contact() const { return contact_; }
-  Stepper& stepper() { return *stepper_; }
-  const Stepper& stepper() const { return *stepper_; }
-  const ConstraintSet& constraints() const { return constraints_; }
+
+  // The parts it is made of, for dumps, benches and one's own measurements (headers of their
+  // rooms).
+  const ClothModel& cloth() const;
+  const State& state() const;
+  const SolidContact& contact() const;
+  Stepper& stepper();
+  const Stepper& stepper() const;
+  const ConstraintSet& constraints() const;
   // Null where contact.self is off and no solid is a mesh.
-  SurfaceContact* surface_contact() { return surface_contact_.get(); }
-  const SurfaceContact* surface_contact() const { return surface_contact_.get(); }
+  SurfaceContact* surface_contact();
+  const SurfaceContact* surface_contact() const;
+  // The content of a Snapshot.
+  SimulationState full_state() const;
+  void set_full_state(const SimulationState& state);
 
   // Chooses the core for steps of up to h (s), as the first step of that length would.
   void prepare(double h);
@@ -121,22 +136,8 @@ class Simulation {
   void set_solid(std::size_t solid);
   MeshSolid& mesh_solid(std::size_t solid);
 
-  World world_;
-  SimulationOptions options_;
-  ClothModel cloth_;
-  std::vector<int> variant_of_;  // which of the world's solids each of contact_'s is
-  SolidContact contact_;
-  std::unique_ptr<SurfaceContact> surface_contact_;
-  std::unique_ptr<Stepper> stepper_;
-  FallbackChain fallback_;
-  ConstraintSet pins_, held_, constraints_;  // held: pins and zones
-  State state_;
-  SolveSummary last_summary_;
-  StepClock clock_;
-  // Solids that wait for the next step to move them, one entry a solid of the world.
-  std::vector<Pose> solid_targets_;
-  std::vector<std::uint8_t> awaits_step_;
-  std::vector<std::vector<Vec3>> shape_targets_;
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
 };
 
 }  // namespace taut

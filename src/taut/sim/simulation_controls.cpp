@@ -6,7 +6,7 @@
 
 #include "taut/base/checksum.h"
 #include "taut/sim/describe.h"
-#include "taut/sim/simulation.h"
+#include "taut/sim/simulation_parts.h"
 #include "taut/sim/validator.h"
 
 namespace taut {
@@ -70,18 +70,26 @@ std::uint64_t sum_of(const World& world) {
 }  // namespace
 
 const ClothPart& Simulation::checked(ClothHandle cloth) const {
-  check_handle("cloth", cloth.index, cloth_.parts().size());
-  return cloth_.parts()[static_cast<std::size_t>(cloth.index)];
+  check_handle("cloth", cloth.index, parts_->cloth.parts().size());
+  return parts_->cloth.parts()[static_cast<std::size_t>(cloth.index)];
 }
 
 PinnedNodes& Simulation::checked(PinHandle pin) {
-  check_handle("pin", pin.index, cloth_.pins().size());
-  return cloth_.pins()[static_cast<std::size_t>(pin.index)];
+  check_handle("pin", pin.index, parts_->cloth.pins().size());
+  return parts_->cloth.pins()[static_cast<std::size_t>(pin.index)];
 }
 
 std::size_t Simulation::checked(SolidHandle solid) const {
-  check_handle("solid", solid.index, world_.solids().size());
+  check_handle("solid", solid.index, parts_->world.solids().size());
   return static_cast<std::size_t>(solid.index);
+}
+
+std::span<const Vec3> Simulation::positions(ClothHandle cloth) const {
+  return part(cloth, parts_->state.x);
+}
+
+std::span<const Vec3> Simulation::velocities(ClothHandle cloth) const {
+  return part(cloth, parts_->state.v);
 }
 
 std::span<const Vec3> Simulation::part(ClothHandle cloth, const std::vector<Vec3>& field) const {
@@ -95,29 +103,29 @@ std::span<const Vec3> Simulation::part(ClothHandle cloth, const std::vector<Vec3
 void Simulation::set_gravity(const Vec3& gravity) {
   Vec3 copy = gravity;
   judge("", [&](Validator& v) { describe_gravity(v, copy); });
-  world_.gravity = gravity;
-  stepper_->external().set_gravity(gravity);
-  if (surface_contact_) surface_contact_->set_gravity(gravity);
+  parts_->world.gravity = gravity;
+  parts_->stepper->external().set_gravity(gravity);
+  if (parts_->surface_contact) parts_->surface_contact->set_gravity(gravity);
 }
 
 void Simulation::set_wind(const WindOptions& wind) {
   WindOptions copy = wind;
   judge("wind.", [&](Validator& v) { describe_wind(v, copy); });
-  world_.wind = wind;
-  stepper_->external().set_wind(wind);
+  parts_->world.wind = wind;
+  parts_->stepper->external().set_wind(wind);
 }
 
 void Simulation::set_material(ClothHandle cloth, const SpringMaterial& material) {
   checked(cloth);
-  ClothOptions copy = world_.cloths()[static_cast<std::size_t>(cloth.index)];
+  ClothOptions copy = parts_->world.cloths()[static_cast<std::size_t>(cloth.index)];
   copy.material = material;
   judge(fmt::format("cloth.{}.", cloth.index), [&](Validator& v) {
     describe_cloth_values(v, {copy.node_mass, copy.density, copy.material, copy.drag,
                               copy.wind_pressure, copy.velocity, !copy.masses.empty()});
   });
-  world_.set_material(cloth, material);
-  const bool splits = options_.integrator == IntegratorKind::imex_adaptive;
-  cloth_.make_springs(world_, splits ? clock_.longest : 0.0);
+  parts_->world.set_material(cloth, material);
+  const bool splits = parts_->options.integrator == IntegratorKind::imex_adaptive;
+  parts_->cloth.make_springs(parts_->world, splits ? parts_->clock.longest : 0.0);
   make_stepper();
 }
 
@@ -125,19 +133,19 @@ void Simulation::set_velocities(ClothHandle cloth, std::span<const Vec3> v) {
   const ClothPart& p = checked(cloth);
   check_count("velocities", v.size(), static_cast<std::size_t>(p.node_count), "nodes");
   check_finite("velocities", v);
-  std::ranges::copy(v, state_.v.begin() + p.first_node);
-  stepper_->start_afresh(state_);
+  std::ranges::copy(v, parts_->state.v.begin() + p.first_node);
+  parts_->stepper->start_afresh(parts_->state);
 }
 
 void Simulation::set_forces(ClothHandle cloth, std::span<const Vec3> force) {
   const ClothPart& p = checked(cloth);
   check_count("forces", force.size(), static_cast<std::size_t>(p.node_count), "nodes");
   check_finite("forces", force);
-  const auto before = stepper_->external().applied();
+  const auto before = parts_->stepper->external().applied();
   std::vector<Vec3> all(before.begin(), before.end());
-  all.resize(static_cast<std::size_t>(cloth_.nodes()), Vec3::Zero());
+  all.resize(static_cast<std::size_t>(parts_->cloth.nodes()), Vec3::Zero());
   std::ranges::copy(force, all.begin() + p.first_node);
-  stepper_->external().set_applied(std::move(all));
+  parts_->stepper->external().set_applied(std::move(all));
 }
 
 // ---- pins
@@ -147,14 +155,14 @@ void Simulation::move(PinHandle pin, const Vec3& displacement) {
   check_finite("displacement", {&displacement, 1});
   std::vector<Vec3> places = pinned.start;
   for (Vec3& x : places) x += displacement;
-  pinned.move_to(std::move(places), state_.time);
+  pinned.move_to(std::move(places), parts_->state.time);
 }
 
 void Simulation::place(PinHandle pin, std::span<const Vec3> places) {
   PinnedNodes& pinned = checked(pin);
   check_count("places", places.size(), pinned.nodes.size(), "pinned nodes");
   check_finite("places", places);
-  pinned.move_to({places.begin(), places.end()}, state_.time);
+  pinned.move_to({places.begin(), places.end()}, parts_->state.time);
 }
 
 void Simulation::release(PinHandle pin) { checked(pin).held = false; }
@@ -163,7 +171,7 @@ void Simulation::hold(PinHandle pin) {
   PinnedNodes& pinned = checked(pin);
   PinnedNodes anew;
   anew.nodes = pinned.nodes;
-  for (const Index node : anew.nodes) anew.start.push_back(state_.x[node]);
+  for (const Index node : anew.nodes) anew.start.push_back(parts_->state.x[node]);
   pinned = std::move(anew);
 }
 
@@ -177,10 +185,10 @@ PinHandle Simulation::pin(ClothHandle cloth, std::vector<Index> nodes) {
           "pin: it holds node {}, but the nodes of cloth '{}' are 0 to {}; name nodes from 0", node,
           p.name, p.node_count - 1));
     pinned.nodes.push_back(p.first_node + node);
-    pinned.start.push_back(state_.x[p.first_node + node]);
+    pinned.start.push_back(parts_->state.x[p.first_node + node]);
   }
-  cloth_.pins().push_back(std::move(pinned));
-  return {static_cast<int>(cloth_.pins().size()) - 1};
+  parts_->cloth.pins().push_back(std::move(pinned));
+  return {static_cast<int>(parts_->cloth.pins().size()) - 1};
 }
 
 // ---- solids
@@ -189,87 +197,95 @@ void Simulation::move(SolidHandle solid, const Pose& pose) {
   const std::size_t k = checked(solid);
   Pose copy = pose;
   judge(fmt::format("solid.{}.", k), [&](Validator& v) { describe_pose(v, copy, true, ""); });
-  solid_targets_[k] = pose;
-  awaits_step_[k] = 1;
+  parts_->solid_targets[k] = pose;
+  parts_->awaits_step[k] = 1;
 }
 
 MeshSolid& Simulation::mesh_solid(std::size_t solid) {
   std::size_t mesh = 0;
   for (std::size_t k = 0; k < solid; ++k)
-    mesh += world_.solids()[k].shape == SolidShape::mesh ? 1u : 0u;
-  return surface_contact_->solids()[mesh];
+    mesh += parts_->world.solids()[k].shape == SolidShape::mesh ? 1u : 0u;
+  return parts_->surface_contact->solids()[mesh];
 }
 
 void Simulation::deform(SolidHandle solid, std::span<const Vec3> shape) {
   const std::size_t k = checked(solid);
-  if (world_.solids()[k].shape != SolidShape::mesh)
-    throw InputError(
-        fmt::format("solid '{}' is no mesh: only a mesh can be deformed", world_.solids()[k].name));
+  if (parts_->world.solids()[k].shape != SolidShape::mesh)
+    throw InputError(fmt::format("solid '{}' is no mesh: only a mesh can be deformed",
+                                 parts_->world.solids()[k].name));
   check_count("shape", shape.size(), static_cast<std::size_t>(mesh_solid(k).vertices()),
               "vertices");
   check_finite("shape", shape);
-  shape_targets_[k].assign(shape.begin(), shape.end());
+  parts_->shape_targets[k].assign(shape.begin(), shape.end());
 }
 
 void Simulation::set_solid(std::size_t solid) {
-  const Solid& s = world_.solids()[solid];
-  for (std::size_t k = 0; k < variant_of_.size(); ++k)
-    if (variant_of_[k] == static_cast<int>(solid)) contact_.set_solid(k, s);
+  const Solid& s = parts_->world.solids()[solid];
+  for (std::size_t k = 0; k < parts_->variant_of.size(); ++k)
+    if (parts_->variant_of[k] == static_cast<int>(solid)) parts_->contact.set_solid(k, s);
   if (s.shape == SolidShape::mesh) mesh_solid(solid).set_motion(s);
 }
 
 // What waits for a step goes from where it is to its target within this one.
 void Simulation::begin_moves(double h) {
-  const double now = state_.time;
-  for (PinnedNodes& pin : cloth_.pins()) pin.begin_step(now, h);
-  for (std::size_t k = 0; k < awaits_step_.size(); ++k) {
-    if (awaits_step_[k]) {
-      Solid moved = world_.solids()[k];
-      moved.key_frames = {{now, moved.pose(now)}, {now + h, solid_targets_[k]}};
-      world_.set_motion({static_cast<int>(k)}, moved);
+  const double now = parts_->state.time;
+  for (PinnedNodes& pin : parts_->cloth.pins()) pin.begin_step(now, h);
+  for (std::size_t k = 0; k < parts_->awaits_step.size(); ++k) {
+    if (parts_->awaits_step[k]) {
+      Solid moved = parts_->world.solids()[k];
+      moved.key_frames = {{now, moved.pose(now)}, {now + h, parts_->solid_targets[k]}};
+      parts_->world.set_motion({static_cast<int>(k)}, moved);
       set_solid(k);
     }
-    if (!shape_targets_[k].empty()) mesh_solid(k).deform(shape_targets_[k], now, now + h);
+    if (!parts_->shape_targets[k].empty())
+      mesh_solid(k).deform(parts_->shape_targets[k], now, now + h);
   }
 }
 
 void Simulation::end_moves() {
-  for (PinnedNodes& pin : cloth_.pins()) pin.end_step();
-  std::ranges::fill(awaits_step_, 0);
-  for (auto& shape : shape_targets_) shape.clear();
+  for (PinnedNodes& pin : parts_->cloth.pins()) pin.end_step();
+  std::ranges::fill(parts_->awaits_step, 0);
+  for (auto& shape : parts_->shape_targets) shape.clear();
 }
 
 // ---- snapshots
 
-Snapshot Simulation::save() const {
-  Snapshot s;
-  s.world = sum_of(world_);
-  s.clock = clock_;
-  s.state = state_;
-  s.contacts = contact_.state();
-  if (surface_contact_) s.surface_contact = surface_contact_->state();
-  s.solver_memory = stepper_->solver().memory();
-  s.gravity = world_.gravity;
-  s.wind = world_.wind;
-  const auto applied = stepper_->external().applied();
+Snapshot Simulation::save() const { return {to_bytes(full_state())}; }
+
+void Simulation::load(const Snapshot& snapshot) {
+  set_full_state(state_from(snapshot.bytes, "the snapshot"));
+}
+
+SimulationState Simulation::full_state() const {
+  SimulationState s;
+  s.world = sum_of(parts_->world);
+  s.clock = parts_->clock;
+  s.state = parts_->state;
+  s.contacts = parts_->contact.state();
+  if (parts_->surface_contact) s.surface_contact = parts_->surface_contact->state();
+  s.solver_memory = parts_->stepper->solver().memory();
+  s.gravity = parts_->world.gravity;
+  s.wind = parts_->world.wind;
+  const auto applied = parts_->stepper->external().applied();
   s.applied.assign(applied.begin(), applied.end());
-  for (const ClothOptions& cloth : world_.cloths()) s.materials.push_back(cloth.material);
-  s.pins.assign(cloth_.pins().begin(), cloth_.pins().end());
-  s.solids.assign(world_.solids().begin(), world_.solids().end());
-  s.solid_targets = solid_targets_;
-  s.awaits_step = awaits_step_;
-  if (surface_contact_)
-    for (const MeshSolid& solid : std::as_const(*surface_contact_).solids())
+  for (const ClothOptions& cloth : parts_->world.cloths()) s.materials.push_back(cloth.material);
+  s.pins.assign(parts_->cloth.pins().begin(), parts_->cloth.pins().end());
+  s.solids.assign(parts_->world.solids().begin(), parts_->world.solids().end());
+  s.solid_targets = parts_->solid_targets;
+  s.awaits_step = parts_->awaits_step;
+  if (parts_->surface_contact)
+    for (const MeshSolid& solid : std::as_const(*parts_->surface_contact).solids())
       s.deformations.push_back(solid.deformation());
-  s.shape_targets = shape_targets_;
+  s.shape_targets = parts_->shape_targets;
   return s;
 }
 
-void Simulation::load(const Snapshot& s) {
-  const std::size_t solids = world_.solids().size(),
-                    meshes = surface_contact_ ? surface_contact_->solids().size() : 0;
-  if (s.world != sum_of(world_) || s.state.x.size() != static_cast<std::size_t>(cloth_.nodes()) ||
-      s.materials.size() != world_.cloths().size() || s.solids.size() != solids ||
+void Simulation::set_full_state(const SimulationState& s) {
+  const std::size_t solids = parts_->world.solids().size(),
+                    meshes = parts_->surface_contact ? parts_->surface_contact->solids().size() : 0;
+  if (s.world != sum_of(parts_->world) ||
+      s.state.x.size() != static_cast<std::size_t>(parts_->cloth.nodes()) ||
+      s.materials.size() != parts_->world.cloths().size() || s.solids.size() != solids ||
       s.solid_targets.size() != solids || s.awaits_step.size() != solids ||
       s.shape_targets.size() != solids || s.deformations.size() != meshes)
     throw InputError(
@@ -277,38 +293,38 @@ void Simulation::load(const Snapshot& s) {
         "masses and solids");
   bool other_material = false;
   for (std::size_t c = 0; c < s.materials.size(); ++c) {
-    other_material = other_material || !(s.materials[c] == world_.cloths()[c].material);
-    world_.set_material({static_cast<int>(c)}, s.materials[c]);
+    other_material = other_material || !(s.materials[c] == parts_->world.cloths()[c].material);
+    parts_->world.set_material({static_cast<int>(c)}, s.materials[c]);
   }
   // An adaptive split, too, is of the longest step so far.
-  const bool splits =
-      options_.integrator == IntegratorKind::imex_adaptive && s.clock.longest != clock_.longest;
+  const bool splits = parts_->options.integrator == IntegratorKind::imex_adaptive &&
+                      s.clock.longest != parts_->clock.longest;
   if (other_material || splits) {
-    const bool adaptive = options_.integrator == IntegratorKind::imex_adaptive;
-    cloth_.make_springs(world_, adaptive ? s.clock.longest : 0.0);
-    clock_.longest = s.clock.longest;
+    const bool adaptive = parts_->options.integrator == IntegratorKind::imex_adaptive;
+    parts_->cloth.make_springs(parts_->world, adaptive ? s.clock.longest : 0.0);
+    parts_->clock.longest = s.clock.longest;
     make_stepper();
-  } else if (s.clock.longest > 0.0 && s.clock.longest != clock_.longest) {
-    stepper_->choose_core(s.clock.longest);
+  } else if (s.clock.longest > 0.0 && s.clock.longest != parts_->clock.longest) {
+    parts_->stepper->choose_core(s.clock.longest);
   }
-  clock_ = s.clock;
-  state_ = s.state;
-  stepper_->solver().restore_memory(s.solver_memory);
-  contact_.restore(s.contacts);
-  if (surface_contact_) surface_contact_->restore(s.surface_contact);
+  parts_->clock = s.clock;
+  parts_->state = s.state;
+  parts_->stepper->solver().restore_memory(s.solver_memory);
+  parts_->contact.restore(s.contacts);
+  if (parts_->surface_contact) parts_->surface_contact->restore(s.surface_contact);
   set_gravity(s.gravity);
   set_wind(s.wind);
-  stepper_->external().set_applied(s.applied);
-  cloth_.pins() = s.pins;
-  solid_targets_ = s.solid_targets;
-  awaits_step_ = s.awaits_step;
-  shape_targets_ = s.shape_targets;
+  parts_->stepper->external().set_applied(s.applied);
+  parts_->cloth.pins() = s.pins;
+  parts_->solid_targets = s.solid_targets;
+  parts_->awaits_step = s.awaits_step;
+  parts_->shape_targets = s.shape_targets;
   std::size_t mesh = 0;
   for (std::size_t k = 0; k < solids; ++k) {
-    world_.set_motion({static_cast<int>(k)}, s.solids[k]);
+    parts_->world.set_motion({static_cast<int>(k)}, s.solids[k]);
     set_solid(k);
-    if (world_.solids()[k].shape == SolidShape::mesh && surface_contact_)
-      surface_contact_->solids()[mesh].set_deformation(s.deformations[mesh]), ++mesh;
+    if (parts_->world.solids()[k].shape == SolidShape::mesh && parts_->surface_contact)
+      parts_->surface_contact->solids()[mesh].set_deformation(s.deformations[mesh]), ++mesh;
   }
 }
 

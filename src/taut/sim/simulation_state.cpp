@@ -1,4 +1,4 @@
-#include "taut/sim/snapshot.h"
+#include "taut/sim/simulation_state.h"
 
 #include "taut/base/checksum.h"
 #include "taut/sim/archive.h"
@@ -7,7 +7,7 @@ namespace taut {
 
 namespace {
 
-constexpr std::string_view magic = "TAUTSNP1";
+constexpr std::string_view snapshot_magic = "TAUTSNP1";
 
 template <class Archive, class P>
 void transfer_pose(Archive& a, P& pose) {
@@ -84,27 +84,28 @@ std::uint64_t sum_of_bytes(std::string_view bytes) {
 
 }  // namespace
 
-std::string to_bytes(const Snapshot& snapshot) {
+std::string to_bytes(const SimulationState& state) {
   ArchiveWriter writer;
-  for (const char c : magic) writer.value(c);
-  transfer(writer, snapshot);
+  for (const char c : snapshot_magic) writer.value(c);
+  transfer(writer, state);
   writer.value(sum_of_bytes(writer.bytes()));
   return writer.bytes();
 }
 
-Snapshot snapshot_from(std::string_view bytes, const std::string& name) {
+SimulationState state_from(std::string_view bytes, const std::string& name) {
   constexpr std::size_t sum_size = sizeof(std::uint64_t);
   const ArchiveReader damaged({}, name);
-  if (bytes.size() < magic.size() + sum_size || !bytes.starts_with(magic)) damaged.fail();
+  if (bytes.size() < snapshot_magic.size() + sum_size || !bytes.starts_with(snapshot_magic))
+    damaged.fail();
   const std::string_view content = bytes.substr(0, bytes.size() - sum_size);
   std::uint64_t sum = 0;
   std::memcpy(&sum, bytes.data() + content.size(), sum_size);
   if (sum != sum_of_bytes(content)) damaged.fail();
-  ArchiveReader reader(content.substr(magic.size()), name);
-  Snapshot snapshot;
-  transfer(reader, snapshot);
+  ArchiveReader reader(content.substr(snapshot_magic.size()), name);
+  SimulationState state;
+  transfer(reader, state);
   if (!reader.at_end()) reader.fail();
-  return snapshot;
+  return state;
 }
 
 }  // namespace taut
