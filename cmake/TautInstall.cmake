@@ -1,15 +1,21 @@
-# cmake --install: the headers, libtaut, the program, and what find_package(taut) reads.
-# taut_cholmod goes into a component of its own (find_package(taut COMPONENTS cholmod)), so that
-# nobody links GPL code who did not ask for it; taut_pardiso likewise.
+# cmake --install: the headers that a user needs, the libraries, the program, and what
+# find_package(taut) reads. taut::taut stands alone; files, pictures and scenes are the component
+# `scenes`. taut_cholmod is a component, so that nobody links GPL code who did not ask for it;
+# taut_pardiso likewise.
 include(CMakePackageConfigHelpers)
 set(taut_cmake_folder ${CMAKE_INSTALL_LIBDIR}/cmake/taut)
 
-get_property(private_headers GLOBAL PROPERTY TAUT_PRIVATE_HEADERS)
-list(TRANSFORM private_headers REPLACE "(.+)" "PATTERN;taut/\\1;EXCLUDE")
-install(DIRECTORY ${CMAKE_SOURCE_DIR}/src/taut DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
-        FILES_MATCHING PATTERN "*.h" ${private_headers})
+get_property(headers GLOBAL PROPERTY TAUT_PUBLIC_HEADERS)
+foreach(header IN LISTS headers)
+  cmake_path(GET header PARENT_PATH folder)
+  install(FILES ${CMAKE_SOURCE_DIR}/src/taut/${header}
+          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/taut/${folder})
+endforeach()
 install(TARGETS taut EXPORT tautTargets)
 install(EXPORT tautTargets NAMESPACE taut:: DESTINATION ${taut_cmake_folder})
+install(TARGETS taut_files taut_pictures taut_scenes EXPORT tautScenesTargets)
+install(EXPORT tautScenesTargets NAMESPACE taut:: FILE tautScenesTargets.cmake
+        DESTINATION ${taut_cmake_folder})
 if(TARGET taut_app)
   install(TARGETS taut_app)
   # The benches run them.
@@ -30,8 +36,8 @@ endif()
 
 if(TARGET taut_pardiso)
   set_target_properties(taut_pardiso PROPERTIES EXPORT_NAME pardiso)
-  install(DIRECTORY ${CMAKE_SOURCE_DIR}/src/taut_pardiso/taut_pardiso
-          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
+  install(FILES ${CMAKE_SOURCE_DIR}/src/taut_pardiso/taut_pardiso/pardiso.h
+          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/taut_pardiso)
   install(TARGETS taut_pardiso EXPORT tautPardisoTargets)
   install(EXPORT tautPardisoTargets NAMESPACE taut:: FILE tautPardisoTargets.cmake
           DESTINATION ${taut_cmake_folder})

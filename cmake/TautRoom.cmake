@@ -1,9 +1,9 @@
 # A room is one folder of src/taut: an object library that may include only the rooms it names.
 #   taut_room(NAME ROOMS base linalg LIBRARIES Eigen3::Eigen PRIVATE_LIBRARIES PkgConfig::cairo
 #             PRIVATE_HEADERS cairo_canvas.h)
-# PRIVATE_HEADERS are those that include a header of a private library, or another private header:
-# they are not installed.
-# libtaut is made of all rooms; a test program of a room links only that room and those below it.
+# PRIVATE_HEADERS are those that include a header of a private library, or another private header.
+# Libraries are made of rooms (taut_library); a test program of a room links only that room and
+# those below it.
 function(taut_room name)
   cmake_parse_arguments(arg "" "" "ROOMS;LIBRARIES;PRIVATE_LIBRARIES;PRIVATE_HEADERS" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cpp
@@ -21,10 +21,8 @@ function(taut_room name)
   set_property(GLOBAL PROPERTY TAUT_ROOMS_OF_${name} ${all_rooms})
   set_property(GLOBAL PROPERTY TAUT_LIBRARIES_OF_${name} ${all_libraries})
   set_property(GLOBAL APPEND PROPERTY TAUT_ROOMS ${name})
-  set_property(GLOBAL APPEND PROPERTY TAUT_PUBLIC_LIBRARIES ${arg_LIBRARIES})
-  set_property(GLOBAL APPEND PROPERTY TAUT_PRIVATE_LIBRARIES ${arg_PRIVATE_LIBRARIES})
-  list(TRANSFORM arg_PRIVATE_HEADERS PREPEND ${name}/)
-  set_property(GLOBAL APPEND PROPERTY TAUT_PRIVATE_HEADERS ${arg_PRIVATE_HEADERS})
+  set_property(GLOBAL PROPERTY TAUT_PUBLIC_LIBRARIES_OF_${name} ${arg_LIBRARIES})
+  set_property(GLOBAL PROPERTY TAUT_PRIVATE_LIBRARIES_OF_${name} ${arg_PRIVATE_LIBRARIES})
   if(NOT sources)
     set(sources ${CMAKE_SOURCE_DIR}/cmake/empty.cpp)
   endif()
@@ -33,6 +31,47 @@ function(taut_room name)
   target_link_libraries(taut_room_${name} PRIVATE taut_compile_options ${all_libraries})
   taut_unity(taut_room_${name})
   target_compile_definitions(taut_room_${name} PRIVATE TAUT_VERSION="${PROJECT_VERSION}")
+endfunction()
+
+# A library that others may link, made of rooms, on top of other libraries of Taut's.
+#   taut_library(taut_scenes NAME scenes ROOMS scene results ON taut taut_files)    taut::scenes
+function(taut_library target)
+  cmake_parse_arguments(arg "" "NAME" "ROOMS;ON" ${ARGN})
+  set(public_libraries ${arg_ON})
+  set(private_libraries)
+  add_library(${target} ${CMAKE_SOURCE_DIR}/cmake/empty.cpp)
+  add_library(taut::${arg_NAME} ALIAS ${target})
+  foreach(room IN LISTS arg_ROOMS)
+    target_sources(${target} PRIVATE $<TARGET_OBJECTS:taut_room_${room}>)
+    get_property(libraries GLOBAL PROPERTY TAUT_PUBLIC_LIBRARIES_OF_${room})
+    list(APPEND public_libraries ${libraries})
+    get_property(libraries GLOBAL PROPERTY TAUT_PRIVATE_LIBRARIES_OF_${room})
+    list(APPEND private_libraries ${libraries})
+  endforeach()
+  list(REMOVE_DUPLICATES private_libraries)
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${arg_NAME})
+  target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}/src>
+                                              $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  target_link_libraries(${target} PUBLIC ${public_libraries}
+                        PRIVATE $<BUILD_INTERFACE:taut_compile_options> ${private_libraries})
+endfunction()
+
+# The headers that are installed: these and what they include of Taut's own. tests/install builds
+# with them alone.
+function(taut_public_headers)
+  set(open ${ARGN})
+  set(found)
+  while(open)
+    list(POP_FRONT open header)
+    if(NOT header IN_LIST found)
+      list(APPEND found ${header})
+      file(STRINGS ${CMAKE_CURRENT_SOURCE_DIR}/${header} includes REGEX "^#include \"taut/")
+      list(TRANSFORM includes REPLACE "^#include \"taut/([^\"]+)\".*" "\\1")
+      list(APPEND open ${includes})
+    endif()
+  endwhile()
+  set_property(GLOBAL PROPERTY TAUT_PUBLIC_HEADERS ${found})
 endfunction()
 
 # Links a target to a room and everything below it, without the rest of libtaut.

@@ -24,7 +24,7 @@ run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
 run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/consumer -B ${WORK}/build -G ${GENERATOR}
     -D CMAKE_CXX_COMPILER=${COMPILER}
     -D CMAKE_BUILD_TYPE=Release -D CMAKE_PREFIX_PATH=${WORK}/prefix -D EXPECT_CHOLMOD=${HAS_CHOLMOD}
-    -D EXPECT_PARDISO=${HAS_PARDISO})
+    -D EXPECT_PARDISO=${HAS_PARDISO} -D EXAMPLES=${CMAKE_CURRENT_LIST_DIR}/../../examples)
 run(${CMAKE_COMMAND} --build ${WORK}/build)
 # A 1 m x 1 m grid of 5 x 4 nodes: rows of 5 nodes at heights 0, 1/3, 2/3 and 1.
 run_and_expect(${WORK}/build/consumer "nodes 20, triangles 24, sum of heights 10\n")

@@ -14,6 +14,7 @@
 #include "taut/base/timer.h"
 #include "taut/scene/scene_file.h"
 #include "taut/step/state.h"
+#include "taut/step/stepper.h"
 
 namespace taut::app {
 

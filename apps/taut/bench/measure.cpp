@@ -19,6 +19,7 @@
 #include "taut/solve/reference.h"
 #include "taut/solve/solver_registry.h"
 #include "taut/step/state.h"
+#include "taut/step/stepper.h"
 
 namespace taut::app {
 

@@ -6,6 +6,7 @@
 #include "taut/base/error.h"
 #include "taut/linalg/sparse_cholesky.h"
 #include "taut/scene/scene_file.h"
+#include "taut/step/integrator.h"
 
 namespace taut::app {
 
