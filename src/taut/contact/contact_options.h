@@ -1,5 +1,5 @@
 #pragma once
-// Options of contact. The scene's reader validates them.
+// Options of contact. Ranges: sim/describe_contact.cpp.
 
 #include <string>
 #include <vector>

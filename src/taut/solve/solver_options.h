@@ -1,5 +1,5 @@
 #pragma once
-// Options of a linear solver; validated by scene/ and by the program.
+// Options of a linear solver; ranges in sim/describe_stepping.cpp.
 
 #include <string>
 
