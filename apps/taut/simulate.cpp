@@ -71,7 +71,9 @@ int simulate(SceneSimulation& simulation, const ResultsFolder& results,
       for (const std::string& warning : summary.warnings)
         progress->on_message("warning: " + warning);
   }
-  if (options.picture) draw_contact_sheet(simulation, results);
+  const bool draws = options.picture &&
+                     (summary.steps > 0 || !std::filesystem::exists(results.contact_sheet_file()));
+  if (draws) draw_contact_sheet(simulation, results);
   if (options.style == ProgressStyle::automatic)
     print_summary(summary, simulation, results, options.picture);
   if (options.style != ProgressStyle::json_lines)

@@ -226,7 +226,7 @@ class Checker:
             found = check_prose.long_lines(path.suffix, text)
             found += check_prose.missing_files(path.suffix, lines, path.parent, project_files)
             if path.suffix == ".h" and name.startswith(("src/", "apps/")):
-                found += check_prose.long_opening(name, lines)
+                found += check_prose.long_opening(lines)
             for line, rule in found:
                 self.report(path, line, rule)
 

@@ -6,14 +6,6 @@ import re
 
 MAX_COLUMNS = 100
 MAX_OPENING = 15
-# Folders and headers whose openings are still essays. This list only ever gets shorter.
-LONG_OPENINGS = (
-    "src/taut/contact/solid_contact.h",
-    "src/taut/core/",
-    "src/taut/results/",
-    "src/taut/solve/",
-    "apps/taut/view/",
-)
 RAW_STRING = re.compile(r'R"([^()\s\\]{0,16})\(.*?\)\1"', re.DOTALL)
 # A file of the project: words with slashes between them, and one of the endings of its sources.
 FILE_NAME = re.compile(
@@ -74,10 +66,8 @@ def long_lines(suffix, text):
     return result
 
 
-def long_opening(path, lines):
+def long_opening(lines):
     """A header opens with a contract; what is longer belongs on a page of docs."""
-    if any(path.startswith(excepted) for excepted in LONG_OPENINGS):
-        return []
     first = next((k for k, line in enumerate(lines) if line.startswith("//")), None)
     if first is None or any(line.startswith("#include") for line in lines[:first]):
         return []

@@ -1,31 +1,12 @@
 #pragma once
-// `taut dump`: the linear system of one step as files that any tool reads (docs/dump.md).
+// `taut dump`: the linear system of one step as files that any tool reads. docs/dump.md names each
+// file, its shape and units, and how they make up A and b.
 //
-//   A.mtx, A_core.mtx           kg; symmetric. A_core: the diagonal 3x3 blocks of A and those
-//                               off-diagonal blocks that a stretch spring
-//   fills K_stretch, K_shear, K_bend  N/m; symmetric, the used stiffness of all springs of a class,
-//                                     whether or not the integrator is
-//   implicit in them D_external.mtx              kg/s; symmetric, drag and wind; absent if there is
-//                                                neither S.mtx, U.mtx general, 3N x 3N
-//   and 3N x n; columns of U: the free directions of node 0, then of node 1, ... M b z x v f dv
-//   .mtx         3N x 1, x0 y0 z0 x1 ...: masses (kg), right-hand side as solved, prescribed part
-//                of the unknown, state at the start of the
-//                               step (m, m/s), force there (N: springs with damping, and external),
-//                               the unknown
-//   x_prev.mtx, v_prev.mtx      BDF2 with a step behind it
-//   guess.mtx                   what iterative solvers started from (before S guess + (I-S) z);
-//                               absent: 0
-//   friction.mtx                N s, impulses of sliding friction that are part of b; absent if
-//                               there are none
-//   springs.csv                 i,j,class,rest_length,stiffness,damping; nodes from 0
-//   meta.json                   step size, integrator, conventions, solver, what it reported;
-//                               written last: without it a dump is not
-//   complete
-//
-// With c_f, c_K, c_D, c_j the integrator's coefficients (step/integrator.h): A = M + c_D
-// (D_external + D_springs) + c_K (K_stretch + K_shear + K_bend), imex: springs of K_stretch only,
-// imex_adaptive: those marked implicit in springs.csv; b has c_j friction in it (c_j = 1 for an
-// unknown dv, 4h/9 for dx).
+//   A, A_core, K_stretch, K_shear, K_bend, D_external, S, U     Matrix Market, sparse
+//   M, b, z, x, v, f, dv, x_prev, v_prev, guess, friction       Matrix Market, 3N x 1
+//   springs.csv                                                 what the elements are
+//   meta.json   step size, integrator, solver and what it reported; written last: a dump without it
+//               is not complete
 
 #include <filesystem>
 #include <functional>

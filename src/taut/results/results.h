@@ -1,23 +1,8 @@
 #pragma once
-// The folder that `taut run` writes (docs/results.md):
+// The folder that `taut run` writes: docs/results.md names each file, its shape and units.
 //
-//   scene.toml          what ran, all defaults filled in
-//   frames/NNNNNN.npy   node positions, float32 (nodes, 3), m; 000000 is the start
-//   frames/contact_NNNNNN.npy what touches each node, uint8 (nodes) (sim/node_contact.h)
-//   frames/triangles.npy int32 (triangles, 3), frames/uv.npy float32 (nodes, 2),
-//   frames/cloths.json: which nodes belong to which cloth frames/solid_K_triangles.npy int32
-//   (triangles, 3), frames/solid_K_points.npy float32 (samples x vertices, 3), m: solids that are
-//   meshes,
-//       K counted from 0; one sample a frame, or a single one if the solid never moves
-//   frames/stretch_springs.npy int32 (springs, 2), the nodes at the ends; frames/rest_lengths.npy
-//   float32 (springs), m: the stretch is L/L0 - 1
-//   stats.csv           one row a step
-//   summary.json        how the run ended, with totals, machine and instruction set
-//   checkpoint/state.bin everything needed to go on, to the same bits
-//   contact_sheet.png   some frames in one picture
-//   last_good/          of a run that failed: the state before, and a picture of the place
-//                       (results/run.h)
-//   stats.svg           stats.csv as curves, where `taut plot` was asked for it
+//   scene.toml, frames/, stats.csv, summary.json, checkpoint/state.bin, contact_sheet.png,
+//   last_good/ of a run that failed, stats.svg where `taut plot` was asked for it
 //
 // Every file is written whole or not at all; stats.csv grows by whole rows. While a run lasts,
 // stats.csv is marked as being written (base/file_lock.h): that tells a run that goes on from one

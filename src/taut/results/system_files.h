@@ -1,21 +1,16 @@
 #pragma once
 // A linear system read from Matrix Market files: a dump of Taut's (results/dump.h), or anyone's
-// symmetric positive definite matrix.
+// symmetric positive definite matrix A. What is not given:
 //
-//   matrix       A, symmetric; checked by to_system_matrix (io/matrix_market.h)
-//   rhs          b; not given: A times ones
-//   constraints  S or U as in a dump. S: projection, block diagonal in 3x3 blocks; U: orthonormal
-//                columns, each in the rows of one node
-//   z            the prescribed part of the solution; not given: 0. Only with constraints
-//   core         a matrix made of some of A's entries, its whole diagonal (blocks) among them: what
-//                core_pcg factorises
-//   guess        where iterative solvers start; not given: 0
-//   masses       M: then ρ of the core is known, which bounds corePCG's iterations
-//   positions    of the nodes, for multigrid's rotations; not given: it does without
+//   rhs          A times ones            z, guess      0; z only with constraints
+//   masses       ρ of the core is unknown, and no bound on corePCG's iterations
+//   positions    multigrid does without rotations
+//   constraints  S: projection, block diagonal in 3x3 blocks; or U: orthonormal columns, each in
+//                the rows of one node
+//   core         a matrix of some of A's entries, its whole diagonal (blocks) among them
 //
 // With constraints, or from a dump, a node is three consecutive rows and A gets 3x3 blocks; else
-// each row is a node of its own. Everything that does not fit is an InputError that names the file
-// and, where there is one, the row and column (from 1).
+// each row is a node. What does not fit is an InputError that names file, row and column (from 1).
 
 #include <filesystem>
 #include <optional>

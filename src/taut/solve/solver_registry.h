@@ -10,8 +10,7 @@
 //                      is another one whenever constraints come or go
 //         mpcg, ppcg   S A S + d (I-S), 3N x 3N in A's pattern, d a mass per node; of M_p⁻¹ its
 //                      part S M_p⁻¹ S counts
-//       M_p⁻¹ must be symmetric positive definite. Where it works block by block on nodes and does
-//       not depend on their basis, all three take the same steps (docs/mathematics.md, 3).
+//       M_p⁻¹ must be symmetric positive definite (docs/mathematics.md, 3).
 //
 // At any time before the name is used, from any thread. An empty name, one with blanks or commas,
 // or one that is taken is an InputError. What factories return must not be null.
