@@ -19,8 +19,8 @@ namespace taut::app {
 
 namespace {
 
-// Some show their answer only: PARDISO's CG needs the factor of an earlier step, and auto decides by
-// its own stop rule. So their iterations cannot be cut at a wanted error.
+// Some show their answer only: PARDISO's CG needs the factor of an earlier step, and auto decides
+// by its own stop rule. So their iterations cannot be cut at a wanted error.
 bool method_hides_iterates(const Method& method) {
   return !solver_traits(method.solver).shows_iterates;
 }

@@ -2,8 +2,8 @@
 // Direct solution of the reduced system (paper Section 4) by Taut's own block Cholesky
 // factorisation in double precision, straight from A (solve/full_space.h): ordering and symbolic
 // work once per topology, whatever contacts do and whatever SolverOptions::reuse_analysis says. The
-// forward solve is done while the factor is computed; solve_again() takes the last factor. One step of iterative refinement where the
-// residual asks for it.
+// forward solve is done while the factor is computed; solve_again() takes the last factor. One step
+// of iterative refinement where the residual asks for it.
 
 #include "taut/linalg/block_cholesky.h"
 #include "taut/solve/solver.h"

@@ -6,12 +6,12 @@
 //   make_solver({.name = "upcg:ic0"})   METHOD or METHOD:VARIANT; METHOD alone is its first
 //                                       variant. docs/solvers.md: what they are, which one when
 //   solve(system, x)                    fills x (3N doubles), says what happened
-//   solve_again(system, x)              another right-hand side, with the last factor if there is one
+//   solve_again(system, x)              another right-hand side, on the last factor if any
 //
 // Never throws for numerical reasons: where the summary's status is not ok, x holds the best
-// iterate, or S guess + (I-S) z if there is none. A solver keeps memory and, where allowed, symbolic
-// work between calls. One object, one thread at a time. One's own: derive, write run(), and
-// register it (solve/solver_registry.h).
+// iterate, or S guess + (I-S) z if there is none. A solver keeps memory and, where allowed,
+// symbolic work between calls. One object, one thread at a time. One's own: derive, write run(),
+// and register it (solve/solver_registry.h).
 
 #include <functional>
 #include <memory>

@@ -57,7 +57,7 @@ class Registry {
     return at == entries_.end() ? nullptr : &*at;
   }
 
-  // Into the place that is kept for it, else behind the last variant of its method, else at the end.
+  // Into the place that is kept for it, else behind the last of its method, else at the end.
   void put(SolverEntry entry) {
     const auto kept = std::ranges::find(entries_, entry.name, &SolverEntry::name);
     if (kept != entries_.end()) {

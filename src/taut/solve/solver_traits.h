@@ -16,7 +16,7 @@ struct SolverTraits {
   bool bounds_iterations = false;
   // It proves how large its error is at most: SolveSummary::error_bound.
   bool proves_error = false;
-  // No iterations: what it leaves of the residual is rounding. If much is left the solve has failed.
+  // No iterations: what it leaves of the residual is rounding. If much is left, it has failed.
   bool is_direct = false;
   // Its symbolic work is done once per topology, whatever SolverOptions::reuse_analysis says.
   bool keeps_analysis = false;
