@@ -6,6 +6,7 @@
 #include "taut/scene/cloth_shape.h"
 #include "taut/scene/doubts.h"
 #include "taut/scene/scene_file.h"
+#include "taut/solve/solver_registry.h"
 
 namespace taut {
 
@@ -73,7 +74,7 @@ void doubt_core(Doubts& d, const Cloth& cloth, const ClothEstimate& e) {
   constexpr double many = 30;
   // IMEX's matrix has the springs of the core only.
   const std::string& solver = d.scene.solver.name;
-  if (!solver.starts_with("core_") || d.scene.solver.chooses_core() ||
+  if (!solver_traits(solver).bounds_iterations || d.scene.solver.chooses_core() ||
       d.scene.time.integrator == IntegratorKind::imex)
     return;
   const double iterations = e.core_iterations(d.scene.time, d.scene.solver.tolerance);
