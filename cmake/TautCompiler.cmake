@@ -1,14 +1,17 @@
-# Flags every Taut target compiles with. No -march: instruction sets are chosen at run time (base/simd.h).
+# Flags every Taut target compiles with. No -march: instruction sets are chosen at run time
+# (base/simd.h).
 add_library(taut_compile_options INTERFACE)
 target_compile_options(taut_compile_options INTERFACE
   $<$<CXX_COMPILER_ID:GNU,Clang>:-Wall;-Wextra;-Wshadow;-Wnon-virtual-dtor;-fopenmp-simd>
-  # No silent a*b+c -> fma outside the multiversioned kernels: the same bits whatever the optimiser feels like.
-  $<$<CXX_COMPILER_ID:GNU,Clang>:-ffp-contract=off;-fno-math-errno>
-  $<$<AND:$<CXX_COMPILER_ID:GNU,Clang>,$<CONFIG:Release>>:-O3>)
+  # No silent a*b+c -> fma outside the multiversioned kernels: the same bits whatever the optimiser
+  # feels like.
+  $<$<CXX_COMPILER_ID:GNU,Clang>:-ffp-contract=off;-fno-math-errno>)
 
 if(TAUT_SANITIZE STREQUAL "address")
-  # Null and misaligned accesses fault or are seen by the address sanitizer; checking each for them doubles the time to compile Eigen's expressions.
-  set(taut_sanitizers -fsanitize=address,undefined -fno-sanitize=null,alignment,object-size -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
+  # Null and misaligned accesses fault or are seen by the address sanitizer; checking each for them
+  # doubles the time to compile Eigen's expressions.
+  set(taut_sanitizers -fsanitize=address,undefined -fno-sanitize=null,alignment,object-size
+      -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
 elseif(TAUT_SANITIZE STREQUAL "thread")
   set(taut_sanitizers -fsanitize=thread -fno-omit-frame-pointer)
 elseif(TAUT_SANITIZE)
@@ -24,7 +27,9 @@ if(TAUT_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${TAUT_CCACHE})
   if(TAUT_SANITIZE OR TAUT_BUILD_TESTS)
     # Without these ccache leaves sources with precompiled headers alone.
-    set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros ${TAUT_CCACHE})
-    target_compile_options(taut_compile_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
+    set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env
+        CCACHE_SLOPPINESS=pch_defines,time_macros ${TAUT_CCACHE})
+    target_compile_options(taut_compile_options
+      INTERFACE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
   endif()
 endif()
