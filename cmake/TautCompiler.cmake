@@ -24,12 +24,7 @@ endif()
 
 find_program(TAUT_CCACHE ccache)
 if(TAUT_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${TAUT_CCACHE})
-  if(TAUT_SANITIZE OR TAUT_BUILD_TESTS)
-    # Without these ccache leaves sources with precompiled headers alone.
-    set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env
-        CCACHE_SLOPPINESS=pch_defines,time_macros ${TAUT_CCACHE})
-    target_compile_options(taut_compile_options
-      INTERFACE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
-  endif()
+  # Without these ccache leaves sources with precompiled headers alone (TautPrecompile.cmake).
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env
+      CCACHE_SLOPPINESS=pch_defines,time_macros ${TAUT_CCACHE})
 endif()

@@ -109,8 +109,8 @@ struct SequenceFormat {
 std::span<const SequenceFormat> sequence_formats();
 // Throws InputError for a name that is none of sequence_formats().
 const SequenceFormat& sequence_format(const std::string& name);
-// The format whose files end as this name does; null where none does. Throws InputError, saying what
-// to give instead, for a kind of file that only sisters of are written (.usdc).
+// The format whose files end as this name does; null where none does. Throws InputError, saying
+// what to give instead, for a kind of file that only sisters of are written (.usdc).
 const SequenceFormat* sequence_format_of(const std::filesystem::path& file_name);
 std::unique_ptr<SequenceWriter> make_sequence_writer(const SequenceFormat& format,
                                                      SequenceOptions options,
