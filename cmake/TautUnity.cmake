@@ -6,7 +6,8 @@
 # Names in unnamed namespaces must then differ within a target. Functions for several instruction
 # sets (base/simd.h) stay alone: what the compiler could inline into them would be computed with
 # other roundings. So do sources with compile options of their own.
-option(TAUT_UNITY "Compile several sources at a time: faster from scratch, slower after a change" OFF)
+option(TAUT_UNITY
+  "Compile several sources at a time: faster from scratch, slower after a change" OFF)
 
 function(taut_unity target)
   if(NOT TAUT_UNITY)
