@@ -5,8 +5,7 @@ target_compile_options(taut_compile_options INTERFACE
   $<$<CXX_COMPILER_ID:GNU,Clang>:-Wall;-Wextra;-Wshadow;-Wnon-virtual-dtor;-fopenmp-simd>
   # No silent a*b+c -> fma outside the multiversioned kernels: the same bits whatever the optimiser
   # feels like.
-  $<$<CXX_COMPILER_ID:GNU,Clang>:-ffp-contract=off;-fno-math-errno>
-  $<$<AND:$<CXX_COMPILER_ID:GNU,Clang>,$<CONFIG:Release>>:-O3>)
+  $<$<CXX_COMPILER_ID:GNU,Clang>:-ffp-contract=off;-fno-math-errno>)
 
 if(TAUT_SANITIZE STREQUAL "address")
   # Null and misaligned accesses fault or are seen by the address sanitizer; checking each for them
@@ -25,12 +24,7 @@ endif()
 
 find_program(TAUT_CCACHE ccache)
 if(TAUT_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${TAUT_CCACHE})
-  if(TAUT_SANITIZE OR TAUT_BUILD_TESTS)
-    # Without these ccache leaves sources with precompiled headers alone.
-    set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env
-        CCACHE_SLOPPINESS=pch_defines,time_macros ${TAUT_CCACHE})
-    target_compile_options(taut_compile_options
-      INTERFACE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
-  endif()
+  # Without these ccache leaves sources with precompiled headers alone (TautPrecompile.cmake).
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env
+      CCACHE_SLOPPINESS=pch_defines,time_macros ${TAUT_CCACHE})
 endif()

@@ -15,7 +15,7 @@
 #include "taut/base/error.h"
 #include "taut/base/file.h"
 
-extern char** environ;
+extern "C" char** environ;
 
 namespace taut::app {
 

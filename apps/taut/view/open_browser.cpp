@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <initializer_list>
 
-extern char** environ;
+extern "C" char** environ;
 
 namespace taut::app {
 

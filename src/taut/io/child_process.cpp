@@ -13,7 +13,7 @@
 
 #include "taut/base/error.h"
 
-extern char** environ;
+extern "C" char** environ;
 
 namespace taut {
 

@@ -94,11 +94,9 @@ class Renderer {
   void set_lights(const CameraAxes& axes, double distance);
   void set_ground(const Camera& camera, double distance);
   void draw_row(int y, std::uint8_t* rgb) const;
-  // With as many more samples as it needs.
-  Vec3f settled_colour(Pixel& pixel) const;
   // Adds the next `count` samples of each of the pixels, a packet at most together; each ends as
   // background, or as a point of a surface or the ground over it.
-  void add_samples(std::span<Pixel> pixels, int count) const;
+  void add_samples(std::span<Pixel* const> pixels, int count) const;
   std::optional<detail::ShadePoint> seen_point(const Vec3f& direction, const detail::Hits& hits,
                                                std::size_t lane) const;
   Vec3f ray_direction(float x, float y) const;
@@ -165,28 +163,26 @@ Image Renderer::draw() const {
 }
 
 // Most pixels are settled by half of their samples: the others go only where those differ
-// (outlines, soft shadows, creases). Where half of them are few, neighbours share a packet.
+// (outlines, soft shadows, creases). Where that is less than a packet, pixels of a row share one.
 void Renderer::draw_row(int y, std::uint8_t* rgb) const {
-  const int first_samples =
-      std::min({packet_size, options_.samples, std::max(4, options_.samples / 2)});
   std::vector<Pixel> pixels;
-  for (int x = 0; x < options_.width;) {
-    pixels.clear();
-    for (int k = 0; k < packet_size / first_samples && x < options_.width; ++k, ++x)
-      pixels.emplace_back(x, y, options_.samples);
-    add_samples(pixels, first_samples);
-    for (Pixel& pixel : pixels) {
-      const Vec3f colour = settled_colour(pixel);
-      for (int k = 0; k < 3; ++k) *rgb++ = detail::to_srgb_byte(colour[k]);
-    }
+  std::vector<Pixel*> open;
+  for (int x = 0; x < options_.width; ++x) pixels.emplace_back(x, y, options_.samples);
+  for (Pixel& pixel : pixels) open.push_back(&pixel);
+  for (int done = 0; done < options_.samples && !open.empty();) {
+    const int half = std::min(packet_size, std::max(4, options_.samples / 2));
+    const int count = std::min(half, options_.samples - done);
+    const auto sharing = static_cast<std::size_t>(packet_size / count);
+    for (std::size_t k = 0; k < open.size(); k += sharing)
+      add_samples(std::span(open).subspan(k, std::min(sharing, open.size() - k)), count);
+    done += count;
+    if (2 * done >= options_.samples)
+      std::erase_if(open, [](const Pixel* pixel) { return pixel->sum.settled(); });
   }
-}
-
-Vec3f Renderer::settled_colour(Pixel& pixel) const {
-  const PixelSum& sum = pixel.sum;
-  while (sum.count < options_.samples && !(2 * sum.count >= options_.samples && sum.settled()))
-    add_samples({&pixel, 1}, std::min(packet_size, options_.samples - sum.count));
-  return sum.colour / static_cast<float>(sum.count);
+  for (const Pixel& pixel : pixels) {
+    const Vec3f colour = pixel.sum.colour / static_cast<float>(pixel.sum.count);
+    for (int k = 0; k < 3; ++k) *rgb++ = detail::to_srgb_byte(colour[k]);
+  }
 }
 
 Vec3f Renderer::ray_direction(float x, float y) const {
@@ -210,10 +206,10 @@ std::optional<detail::ShadePoint> Renderer::seen_point(const Vec3f& direction,
   return std::nullopt;
 }
 
-void Renderer::add_samples(std::span<Pixel> pixels, int count) const {
+void Renderer::add_samples(std::span<Pixel* const> pixels, int count) const {
   const std::size_t lanes = pixels.size() * static_cast<std::size_t>(count);
   const auto pixel_of = [&](std::size_t lane) -> Pixel& {
-    return pixels[lane / static_cast<std::size_t>(count)];
+    return *pixels[lane / static_cast<std::size_t>(count)];
   };
   Packet<detail::PixelSample> samples;
   detail::Rays rays;

@@ -149,9 +149,9 @@ std::vector<std::filesystem::path> SequenceExport::files_of_other_frames() const
 }
 
 std::string SequenceExport::written_to() const {
+  if (options_.file_name.empty()) return options_.folder.string();
   const std::filesystem::path file = options_.folder / options_.file_name;
-  if (options_.file_name.empty() || std::filesystem::exists(file))
-    return file.lexically_normal().string();
+  if (std::filesystem::exists(file)) return file.lexically_normal().string();
   const std::string pattern = file.stem().string() + "_*" + file.extension().string();
   return (options_.folder / pattern).lexically_normal().string();
 }
