@@ -4,6 +4,7 @@
 #include <cassert>
 
 #include "taut/base/parallel.h"
+#include "taut/base/simd.h"
 
 namespace taut {
 
@@ -25,6 +26,16 @@ struct VectorSink : ConnectionSink {
   void matrix(Index, Index, Index, int, bool) override {}
   void vector(Index id, Index node, int sign) override { on_vector(id, node, sign); }
 };
+
+// sum += sign b, or of bᵀ.
+TAUT_ALWAYS_INLINE void add_block(const double* b, double sign, bool transposed, double (&sum)[9]) {
+  if (transposed) {
+    for (int r = 0; r < 3; ++r)
+      for (int q = 0; q < 3; ++q) sum[3 * r + q] += sign * b[3 * q + r];
+  } else {
+    for (int e = 0; e < 9; ++e) sum[e] += sign * b[e];
+  }
+}
 
 // Runs `visit(add)` twice: once to count, once to place; `add(slot, entry)` appends entry to the
 // slot's list, in order of calls.
@@ -176,25 +187,18 @@ CoreElements Assembler::elements_of(std::span<const std::uint8_t> mask) const {
   return core;
 }
 
-void Assembler::add(Contribution from, double (&sum)[9]) const {
-  const double* b = &blocks_[9 * static_cast<std::size_t>(from.id())];
-  const double sign = from.negative() ? -1.0 : 1.0;
-  if (from.transposed()) {
-    for (int r = 0; r < 3; ++r)
-      for (int q = 0; q < 3; ++q) sum[3 * r + q] += sign * b[3 * q + r];
-  } else {
-    for (int e = 0; e < 9; ++e) sum[e] += sign * b[e];
-  }
-}
-
 template <class IsTaken>
 void Assembler::gather_row(Index i, IsTaken is_taken, BlockCsr& a) const {
   const BlockPattern& p = *pattern_;
   const Index width = p.width(i);
   for (Index k = p.row_start[i]; k < p.row_start[i + 1]; ++k) {
     double sum[9] = {};
-    for (Index c = block_start_[k]; c < block_start_[k + 1]; ++c)
-      if (is_taken(block_list_[c].id())) add(block_list_[c], sum);
+    for (Index c = block_start_[k]; c < block_start_[k + 1]; ++c) {
+      const Contribution from = block_list_[c];
+      if (!is_taken(from.id())) continue;
+      add_block(&blocks_[9 * static_cast<std::size_t>(from.id())], from.negative() ? -1.0 : 1.0,
+                from.transposed(), sum);
+    }
     if (k == p.diagonal[i]) {
       const double mass = diagonal_.mass * diagonal_.masses[i];
       for (int r = 0; r < 3; ++r) sum[4 * r] += mass;
@@ -224,7 +228,9 @@ void Assembler::gather_rest_diagonal(const CoreElements& core, std::span<Mat3> d
       const Index k = pattern_->diagonal[i];
       double sum[9] = {};
       for (Index c = block_start_[k]; c < block_start_[k + 1]; ++c)
-        if (core.is_outside[block_list_[c].id()]) add(block_list_[c], sum);
+        if (const Contribution from = block_list_[c]; core.is_outside[from.id()])
+          add_block(&blocks_[9 * static_cast<std::size_t>(from.id())], from.negative() ? -1.0 : 1.0,
+                    from.transposed(), sum);
       diagonal[i] = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(sum);
     }
   });

@@ -87,7 +87,6 @@ class Assembler {
   }
   void build_pattern(Index nodes);
   void build_gather(Index nodes);
-  void add(Contribution from, double (&sum)[9]) const;
   template <class IsTaken>
   void gather_row(Index i, IsTaken is_taken, BlockCsr& a) const;
 

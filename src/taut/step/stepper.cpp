@@ -91,8 +91,10 @@ std::vector<std::uint8_t> Stepper::family_core(std::span<const ForceClass> famil
 
 ElementCore Stepper::core_of(std::span<const ForceClass> families) const {
   std::string name;
-  for (const ForceClass family : families)
-    name += std::string(name.empty() ? "" : "+") + name_of(family);
+  for (const ForceClass family : families) {
+    if (!name.empty()) name += '+';
+    name += name_of(family);
+  }
   return {name, family_core(families), assembler_};
 }
 
