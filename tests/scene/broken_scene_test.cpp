@@ -171,6 +171,7 @@ std::vector<Broken> broken_scenes() {
        {"100 million"}},
       // What belongs together.
       {"no_cloth", "title = \"x\"\n", "1:1", {"cloth is missing"}},
+      {"empty_list_of_cloths", "cloth = []\n", "1:9", {"cloth is missing", "at least one"}},
       {"no_grid_nodes",
        "[[cloth]]\ngrid = { u = [1, 0, 0], v = [0, 1, 0] }\ndensity = 0.2\n",
        "2:8",
