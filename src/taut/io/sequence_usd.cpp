@@ -1,6 +1,6 @@
 // sequence.usda, or the name chosen: USD as text. One Mesh prim an object under /World; topology
-// and texture coordinates once, points and extent at every frame, for what does not move once. The time
-// code is the frame's number, timeCodesPerSecond makes seconds of it.
+// and texture coordinates once, points and extent at every frame, for what does not move once.
+// The time code is the frame's number, timeCodesPerSecond makes seconds of it.
 //
 // Source: OpenUSD 24, "USD file format: text", schemas UsdGeomMesh, UsdGeomPointBased,
 // UsdGeomGprim.
