@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "taut/base/error.h"
+#include "taut/sim/simulation_state.h"
 
 namespace taut {
 namespace {

@@ -12,6 +12,7 @@
 #include "taut/scene/scene_file.h"
 #include "taut/scene/scene_simulation.h"
 #include "taut/sim/cloth_model.h"
+#include "taut/sim/simulation_state.h"
 #include "taut/sim/surface_contact.h"
 #include "taut/solve/linear_system.h"
 #include "taut/step/state.h"
@@ -113,11 +114,11 @@ TEST(ContactSimulation, ResumesToTheSameBitsInTheMidstOfZones) {
   ASSERT_LT(steps, 300) << "no zone was ever kept";
   EXPECT_GT(record.zone_nodes, 0);
   SceneSimulation resumed(scene);
-  resumed.restore(simulation.state(), simulation.contact().state(), simulation.steps_done(),
-                  simulation.stepper().solver().memory(), simulation.surface_contact()->state());
+  resumed.load(simulation.save());
   SceneSimulation forgetful(scene);
-  forgetful.restore(simulation.state(), simulation.contact().state(), simulation.steps_done(),
-                    simulation.stepper().solver().memory());
+  SimulationState without_zones = simulation.full_state();
+  without_zones.surface_contact = {};
+  forgetful.set_full_state(without_zones);
   bool zones_matter = false;
   for (int k = 0; k < 5; ++k) {
     ASSERT_TRUE(simulation.step(record).ok());
@@ -138,12 +139,11 @@ TEST(ContactSimulation, ResumesToTheSameBitsInAHeap) {
   for (int k = 0; k < 200; ++k) ASSERT_TRUE(simulation.step(record).ok());
   const ClothContactState& contact = simulation.surface_contact()->state();
   ASSERT_GT(contact.forces.size(), 100u);
-  const auto solver_memory = simulation.stepper().solver().memory();
   SceneSimulation resumed(scene), forgetful(scene);
-  resumed.restore(simulation.state(), simulation.contact().state(), simulation.steps_done(),
-                  solver_memory, contact);
-  forgetful.restore(simulation.state(), simulation.contact().state(), simulation.steps_done(),
-                    solver_memory, {contact.zones, {}});
+  resumed.load(simulation.save());
+  SimulationState without_forces = simulation.full_state();
+  without_forces.surface_contact.forces.clear();
+  forgetful.set_full_state(without_forces);
   for (SceneSimulation* s : {&simulation, &resumed, &forgetful}) ASSERT_TRUE(s->step(record).ok());
   EXPECT_EQ(resumed.state().x, simulation.state().x);
   EXPECT_EQ(resumed.state().v, simulation.state().v);

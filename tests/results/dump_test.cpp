@@ -11,6 +11,7 @@
 #include "taut/results/system_files.h"
 #include "taut/scene/scene_file.h"
 #include "taut/solve/linear_system.h"
+#include "taut/solve/solver.h"
 
 namespace taut {
 namespace {

@@ -27,12 +27,12 @@ Vec3 vertex_at(const MeshSolid& solid, double time, std::size_t vertex) {
 TEST(MeshSolid, IsScaledTurnedAndCarried) {
   const test::TemporaryFolder folder;
   write_obj(folder / "wedge.obj", wedge);
-  Solid solid;
+  SolidEntry solid;
   solid.shape = SolidShape::mesh;
   solid.mesh = "wedge.obj";
   solid.scale = 0.5, solid.y_up = true;
   solid.initial.translation = Vec3(1, 0, 0), solid.velocity = Vec3(0, 0, 2);
-  const MeshSolid placed(solid, folder / "");
+  const MeshSolid placed(solid, read_surface(solid, folder / ""));
   EXPECT_EQ(vertex_at(placed, 0.0, 2), Vec3(1, 0, 2)) << "y up becomes z up";
   EXPECT_EQ(vertex_at(placed, 0.5, 2), Vec3(1, 0, 3));
   EXPECT_EQ(vertex_at(placed, 0.0, 3), Vec3(1, -3, 0));
@@ -48,10 +48,10 @@ TEST(MeshSolid, FollowsItsSamples) {
     writer.add_sample(x);
   }
   writer.finish();
-  Solid solid;
+  SolidEntry solid;
   solid.shape = SolidShape::mesh;
   solid.mesh = "wedge.obj", solid.motion = "wedge.pc2", solid.motion_rate = 10.0;
-  const MeshSolid deforming(solid, folder / "");
+  const MeshSolid deforming(solid, read_surface(solid, folder / ""));
   for (const auto& [time, z] : {std::pair(-1.0, 6.0),
                                 {0.0, 6.0},
                                 {0.05, 6.5},
@@ -101,12 +101,12 @@ thickness = 2e-3
 }
 
 TEST(MeshSolid, AMissingFileIsNamed) {
-  Solid solid;
+  SolidEntry solid;
   solid.name = "body";
   solid.shape = SolidShape::mesh;
   solid.mesh = "nowhere.obj";
   try {
-    MeshSolid(solid, "/scenes");
+    read_surface(solid, "/scenes");
     FAIL() << "not refused";
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("/scenes/nowhere.obj"), std::string::npos)

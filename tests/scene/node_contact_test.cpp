@@ -12,6 +12,7 @@
 #include "taut/contact/solid_contact.h"
 #include "taut/io/obj.h"
 #include "taut/scene/scene_file.h"
+#include "taut/scene/scene_simulation.h"
 #include "taut/sim/surface_contact.h"
 #include "taut/step/state.h"
 #include "taut/step/stepper.h"
@@ -124,10 +125,7 @@ TEST(NodeContact, SameForAnyNumberOfThreadsAndAfterAResume) {
     for (int k = 1; k <= steps; ++k) {
       advance(simulation, 1);
       if (k > interrupted) advance(resumed, 1);
-      if (k == interrupted)
-        resumed.restore(simulation.state(), simulation.contact().state(), simulation.steps_done(),
-                        simulation.stepper().solver().memory(),
-                        simulation.surface_contact()->state());
+      if (k == interrupted) resumed.load(simulation.save());
       const std::vector<std::uint8_t> contact = node_contact(simulation);
       for (const std::uint8_t bits : contact) seen |= bits;
       if (threads == 1) one.push_back(contact);

@@ -28,8 +28,8 @@ void expect_round_trip(const Scene& scene) {
   EXPECT_EQ(scene_to_toml(again), text);
 }
 
-Solid named(const std::string& name, SolidShape shape) {
-  Solid solid;
+SolidEntry named(const std::string& name, SolidShape shape) {
+  SolidEntry solid;
   solid.name = name;
   solid.shape = shape;
   return solid;
@@ -95,17 +95,17 @@ Scene everything_changed(const fs::path& mesh) {
   from_mesh.density = 0.15;
   s.cloths = {grid, from_mesh};
 
-  Solid ball = named("ball", SolidShape::sphere);
+  SolidEntry ball = named("ball", SolidShape::sphere);
   ball.radius = 0.3;
   ball.friction = 0.4;
   ball.thickness = 0.01;
   ball.initial = {Eigen::Quaterniond(Eigen::AngleAxisd(M_PI / 6, Vec3::UnitX())), Vec3(1, 2, 3)};
   ball.velocity = Vec3(1, 0, 0);
   ball.angular_velocity = Vec3(0, 2, 0);
-  Solid can = named("can", SolidShape::cylinder);
+  SolidEntry can = named("can", SolidShape::cylinder);
   can.radius = 0.4;
   can.height = 2.5;
-  Solid box = named("box", SolidShape::box);
+  SolidEntry box = named("box", SolidShape::box);
   box.size = Vec3(1, 2, 3);
   box.key_frames = {{0, {}}, turned};
   s.solids = {ball, named("plane", SolidShape::plane), can, box};
@@ -126,7 +126,7 @@ TEST(SceneFile, AnyRotationKeepsItsBits) {
       "/a.toml");
   std::srand(5);
   for (int i = 0; i < 50; ++i) {
-    Solid solid = named(std::string("s").append(std::to_string(i)), SolidShape::sphere);
+    SolidEntry solid = named(std::string("s").append(std::to_string(i)), SolidShape::sphere);
     solid.initial.rotation = Eigen::Quaterniond::UnitRandom();
     scene.solids.push_back(solid);
   }

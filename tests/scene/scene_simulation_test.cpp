@@ -9,15 +9,15 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
-#include <sstream>
 
 #include "taut/base/error.h"
 #include "taut/base/parallel.h"
 #include "taut/contact/solid_contact.h"
-#include "taut/results/checkpoint.h"
 #include "taut/scene/scene_file.h"
 #include "taut/sim/cloth_model.h"
+#include "taut/sim/simulation_state.h"
 #include "taut/sim/surface_contact.h"
+#include "taut/solve/solver.h"
 #include "taut/step/state.h"
 #include "taut/step/stepper.h"
 
@@ -113,7 +113,7 @@ struct Interrupted {
   int at;
 };
 
-TEST(Simulation, GoesOnFromACheckpointToTheSameBits) {
+TEST(Simulation, GoesOnFromASnapshotToTheSameBits) {
   // `auto`: while it tries its methods for the first time, and later.
   for (const auto& [integrator, solver, at] :
        {Interrupted{"time.integrator=semi_implicit_euler", "solver.name=core_pcg:block", 20},
@@ -126,33 +126,22 @@ TEST(Simulation, GoesOnFromACheckpointToTheSameBits) {
     SCOPED_TRACE(fmt::format("{}, {}, step {}", integrator, solver, at));
     SceneSimulation whole(scene), resumed(scene);
     StepReport record;
-    std::string bytes;
+    Snapshot snapshot;
     for (int k = 0; k < 40; ++k) {
       if (k == at) {
         EXPECT_GE(whole.contact().contacts(), k < 10 ? 0 : 5);
-        std::ostringstream out;
-        write(out, Checkpoint{scene_to_toml(scene),
-                              whole.steps_done(),
-                              3,
-                              whole.state(),
-                              whole.contact().state(),
-                              whole.stepper().solver().memory(),
-                              whole.surface_contact()->state(),
-                              {}});
-        bytes = out.str();
+        snapshot = whole.save();
       }
       ASSERT_TRUE(whole.step(record).ok());
     }
-    Checkpoint checkpoint = parse_checkpoint(bytes, "state.bin");
-    resumed.restore(checkpoint.state, checkpoint.contacts, checkpoint.steps,
-                    checkpoint.solver_memory, checkpoint.surface_contact);
+    resumed.load(snapshot);
     for (int k = at; k < 40; ++k) ASSERT_TRUE(resumed.step(record).ok());
     EXPECT_EQ(resumed.steps_done(), 40);
     expect_same(resumed.state(), whole.state(), integrator);
     EXPECT_TRUE(resumed.contact().state() == whole.contact().state());
     EXPECT_EQ(resumed.stepper().solver().memory(), whole.stepper().solver().memory());
     if (scene.solver.name == "auto") {
-      EXPECT_NE(checkpoint.solver_memory, make_solver(scene.solver)->memory())
+      EXPECT_NE(state_from(snapshot.bytes, "it").solver_memory, make_solver(scene.solver)->memory())
           << "there was nothing to remember";
     }
   }
@@ -237,6 +226,12 @@ TEST(Simulation, ASolverThatGivesUpIsReplacedForThatSolveAndCounted) {
         << "the direct method gives the same motion";
 }
 
+void set_state(Simulation& simulation, const State& state) {
+  SimulationState whole = simulation.full_state();
+  whole.state = state;
+  simulation.set_full_state(whole);
+}
+
 // A sheet that spins about one held corner, 0.4 rad a step.
 const std::string spinning = R"(
 gravity = [0, 0, 0]
@@ -255,7 +250,7 @@ State spin(const Scene& scene, int steps, std::vector<StepReport>& records) {
   SceneSimulation simulation(scene);
   State state = simulation.state();
   for (std::size_t i = 0; i < state.x.size(); ++i) state.v[i] = Vec3(0, 0, 100).cross(state.x[i]);
-  simulation.restore(state, simulation.contact().state(), 0);
+  set_state(simulation, state);
   records.assign(static_cast<std::size_t>(steps), {});
   for (StepReport& record : records) {
     const Status status = simulation.step(record);
@@ -306,7 +301,7 @@ TEST(Simulation, AStepThatCannotBeSolvedLeavesTheStateAsItWas) {
   SceneSimulation simulation(scene);
   State state = simulation.state();
   state.v[7] = Vec3(1e200, 0, 0);  // its square is not a number that a solver can hold
-  simulation.restore(state, simulation.contact().state(), 0);
+  set_state(simulation, state);
   StepReport record;
   const Status status = simulation.step(record);
   ASSERT_FALSE(status.ok());

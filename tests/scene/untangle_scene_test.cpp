@@ -14,6 +14,7 @@
 #include "taut/io/obj.h"
 #include "taut/scene/scene_file.h"
 #include "taut/scene/scene_simulation.h"
+#include "taut/scene/scene_world.h"
 #include "taut/sim/cloth_model.h"
 #include "taut/sim/surface_contact.h"
 #include "taut/step/state.h"
@@ -106,7 +107,7 @@ TEST(UntangleScene, PinnedNodesStayWhereTheirPinsAre) {
       test::slipped_scene("jitter = 1e-3\npin = [{ corners = [\"u0v0\", \"u1v0\"] }]\n");
   const Scene scene =
       read_scene_text(text, "/scenes/test.toml", std::vector<std::string>{"contact.untangle=true"});
-  const ClothModel before(scene);
+  const ClothModel before(make_world(scene).world);
   SceneSimulation simulation(scene);
   const UntangleReport& report = *simulation.surface_contact()->untangled();
   EXPECT_GT(report.intersections_before, 0);
