@@ -251,9 +251,10 @@ TEST(FirstDay, WhatOnlyTheMeshShowsIsReportedAtItsLine) {
   std::string scene = mesh_scene();
   folder.file("mesh.toml", scene.replace(scene.find("[0]"), 3, "[0, 2799]"));
   expect_said(taut(folder, {"check", "mesh.toml"}), 1,
-              {"mesh.toml:9:9: cloth 'patch': a pin holds node 2799, but its nodes are 0 to 5"});
+              {"mesh.toml:9:9: cloth.0.pin.0.nodes: a pin holds node 2799, but the nodes of cloth "
+               "'patch' are 0 to 5"});
   expect_said(taut(folder, {"check", "mesh.toml", "--set", "cloth.0.pin.0.nodes=[7]"}), 1,
-              {"--set cloth.0.pin.0.nodes=[7]: cloth 'patch'"});
+              {"--set cloth.0.pin.0.nodes=[7]: cloth.0.pin.0.nodes: a pin holds node 7"});
 }
 
 TEST(FirstDay, UnitsAndSeamsOfAMeshAreDoubted) {
