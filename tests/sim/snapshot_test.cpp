@@ -119,5 +119,15 @@ TEST(Snapshot, OfAnotherWorldOrDamagedIsRefused) {
   EXPECT_TRUE(simulation.save() == whole);
 }
 
+TEST(Snapshot, OfAnotherSolverChangesNothing) {
+  const HangingSheet sheet;
+  Simulation by_auto(sheet.world), direct(sheet.world, {.solver = {.name = "block_cholesky"}});
+  go(by_auto, sheet, 0, 12);
+  go(direct, sheet, 0, 3);
+  const Snapshot before = direct.save();
+  EXPECT_THROW(direct.load(by_auto.save()), InputError);
+  EXPECT_TRUE(direct.save() == before);
+}
+
 }  // namespace
 }  // namespace taut::test

@@ -131,6 +131,7 @@ class Simulation {
   PinnedNodes& checked(PinHandle pin);
   std::size_t checked(SolidHandle solid) const;
   void make_stepper();
+  void take(const SimulationState& state);
   void begin_moves(double h);
   void end_moves();
   void set_solid(std::size_t solid);

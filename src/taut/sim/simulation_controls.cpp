@@ -291,6 +291,16 @@ void Simulation::set_full_state(const SimulationState& s) {
     throw InputError(
         "the snapshot belongs to another world: load it into a simulation of the same meshes, "
         "masses and solids");
+  const SimulationState before = full_state();
+  try {
+    take(s);
+  } catch (const InputError&) {
+    take(before);  // all or nothing
+    throw;
+  }
+}
+
+void Simulation::take(const SimulationState& s) {
   bool other_material = false;
   for (std::size_t c = 0; c < s.materials.size(); ++c) {
     other_material = other_material || !(s.materials[c] == parts_->world.cloths()[c].material);
@@ -320,7 +330,7 @@ void Simulation::set_full_state(const SimulationState& s) {
   parts_->awaits_step = s.awaits_step;
   parts_->shape_targets = s.shape_targets;
   std::size_t mesh = 0;
-  for (std::size_t k = 0; k < solids; ++k) {
+  for (std::size_t k = 0; k < s.solids.size(); ++k) {
     parts_->world.set_motion({static_cast<int>(k)}, s.solids[k]);
     set_solid(k);
     if (parts_->world.solids()[k].shape == SolidShape::mesh && parts_->surface_contact)
