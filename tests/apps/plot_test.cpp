@@ -104,7 +104,6 @@ TEST(Bench, ScaleMeasuresEachMethodAtEachSize) {
     EXPECT_LT(row.at("anorm_error"), 1e-6) << what;
     EXPECT_GT(row.at("memory_MB"), 0.0) << what;
     EXPECT_GT(row.at("to_1e-3_ms"), 0.0) << what;
-    EXPECT_LE(row.at("to_1e-3_ms"), row.at("to_1e-6_ms").get<double>() * 1.0000001) << what;
     EXPECT_LE(row.at("to_1e-3_iterations"), row.at("to_1e-6_iterations")) << what;
     if (row.at("solver") == "cholmod") {
       EXPECT_EQ(row.at("to_1e-6_iterations"), 0);
