@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Draws docs/images/headline.png: what stiffness costs, three ways to solve one system.
 
-    taut bench flatness --threads 2 --full --nodes 6561 \\
+    taut bench flatness --threads 2 --nodes 6561 --k-stretch 60 600 6000 60000 600000 6000000 \\
         --solver cholmod,upcg:projected_block_diagonal,auto --json out/flatness.json
     tools/plot_headline.py out/flatness.json docs/images/headline.png
 
